@@ -1,0 +1,58 @@
+# How every target of ours is made: C++20, warnings as errors, one include root.
+
+option(SIGNORINI_WERROR "Treat warnings on our own targets as errors" ${PROJECT_IS_TOP_LEVEL})
+
+function(signorini_compile_options target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_compile_options(${target} PRIVATE
+    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
+    -Woverloaded-virtual -Wdouble-promotion -Wimplicit-fallthrough)
+  if(SIGNORINI_WERROR)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+endfunction()
+
+# signorini_library(NAME SOURCES ... DEPENDS ...): target signorini_NAME, alias signorini::NAME.
+function(signorini_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  set(target signorini_${name})
+  add_library(${target} ${ARG_SOURCES})
+  add_library(signorini::${name} ALIAS ${target})
+  signorini_compile_options(${target})
+  target_include_directories(${target} PUBLIC
+    $<BUILD_INTERFACE:${SIGNORINI_INCLUDE_DIR}>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_libraries(${target} PUBLIC ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE_DEPENDS})
+  set_target_properties(${target} PROPERTIES
+    EXPORT_NAME ${name} OUTPUT_NAME signorini-${name}
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR} POSITION_INDEPENDENT_CODE ON)
+  set_property(GLOBAL APPEND PROPERTY SIGNORINI_LIBRARIES ${target})
+endfunction()
+
+# signorini_program(NAME SOURCES ... DEPENDS ...): an installed executable.
+function(signorini_program name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  signorini_compile_options(${name})
+  target_link_libraries(${name} PRIVATE ${ARG_DEPENDS})
+  target_include_directories(${name} PRIVATE ${SIGNORINI_INCLUDE_DIR})
+  set_property(GLOBAL APPEND PROPERTY SIGNORINI_PROGRAMS ${name})
+endfunction()
+
+# signorini_test(NAME SOURCES ... DEPENDS ... [TIMEOUT seconds]): one GoogleTest executable, its
+# tests registered one by one. SIGNORINI_SHARED_DIR is where problem and scene files may lie; tests
+# that need them skip, by name, when the folder is absent.
+function(signorini_test name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPENDS" ${ARGN})
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  add_executable(${name} ${ARG_SOURCES})
+  signorini_compile_options(${name})
+  target_link_libraries(${name} PRIVATE ${ARG_DEPENDS} GTest::gtest_main)
+  target_include_directories(${name} PRIVATE ${SIGNORINI_INCLUDE_DIR} ${PROJECT_SOURCE_DIR})
+  target_compile_definitions(${name} PRIVATE
+    SIGNORINI_SHARED_DIR="${PROJECT_SOURCE_DIR}/../shared" SIGNORINI_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  gtest_discover_tests(${name} TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 120
+                       PROPERTIES TIMEOUT ${ARG_TIMEOUT})
+endfunction()

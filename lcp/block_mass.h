@@ -1,0 +1,55 @@
+#pragma once
+
+#include <signorini/lcp/types.h>
+
+#include <vector>
+
+namespace signorini::lcp {
+
+/// The inverse mass W = blockdiag(W_0, W_1, ...) of a factored matrix A = J W J^T: one symmetric
+/// positive definite block a body, of any size (6 for a free rigid body; the number of degrees of
+/// freedom of an articulated one). A block is given either as W_k itself or as the mass M_k, which
+/// is then kept as its Cholesky factor and applied by two triangular solves.
+///
+/// Immovable and driven bodies have no block: their velocity belongs in q.
+class BlockMass {
+ public:
+  /// Adds a block by its inverse mass W_k (d x d, symmetric, only checked to be finite and square).
+  /// @return the block's number. @throws std::invalid_argument
+  int add_inverse(const MatrixRef& inverse_mass);
+
+  /// Adds a block by its mass M_k (d x d). @return the block's number.
+  /// @throws std::invalid_argument unless M_k is square, finite, symmetric to 1e-12 and positive
+  /// definite.
+  int add_mass(const MatrixRef& mass);
+
+  void clear();
+  void reserve(int blocks, int dimension_each);
+
+  [[nodiscard]] int block_count() const { return static_cast<int>(blocks_.size()); }
+  [[nodiscard]] int dimension(int block) const { return blocks_[block].dimension; }
+  /// The first degree of freedom of the block in the stacked velocity vector.
+  [[nodiscard]] int offset(int block) const { return blocks_[block].offset; }
+  /// The length of the stacked velocity vector.
+  [[nodiscard]] int degrees_of_freedom() const { return degrees_of_freedom_; }
+
+  /// y = W_k x for one block; x and y hold dimension(block) numbers and must not overlap.
+  /// Scalar is double or long double.
+  template <typename Scalar>
+  void apply_inverse(int block, const Scalar* x, Scalar* y) const;
+
+ private:
+  struct Block {
+    int offset;
+    int dimension;
+    int values;      // where the block's d x d numbers start, column-major
+    bool is_factor;  // the numbers are L of M_k = L L^T, not W_k
+  };
+  int add(const Matrix& values, bool is_factor);
+
+  std::vector<Block> blocks_;
+  std::vector<double> values_;
+  int degrees_of_freedom_ = 0;
+};
+
+}  // namespace signorini::lcp

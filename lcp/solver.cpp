@@ -1,0 +1,88 @@
+#include <signorini/lcp/ray.h>
+#include <signorini/lcp/solver.h>
+
+#include <stdexcept>
+#include <string>
+
+namespace signorini::lcp {
+
+void SolverSettings::validate() const {
+  if (!(tolerance > 0.0)) {
+    throw std::invalid_argument("settings: tolerance: must be > 0, got " +
+                                std::to_string(tolerance));
+  }
+  if (max_iterations < -1) {
+    throw std::invalid_argument("settings: max_iterations: must be >= 0, or -1 for the default, got " +
+                                std::to_string(max_iterations));
+  }
+  if (!(time_limit > 0.0)) {
+    throw std::invalid_argument("settings: time_limit: must be > 0 s, got " +
+                                std::to_string(time_limit));
+  }
+}
+
+Deadline::Deadline(double seconds) : start_(std::chrono::steady_clock::now()), seconds_(seconds) {}
+
+double Deadline::elapsed_seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+}
+
+bool Deadline::passed() const { return elapsed_seconds() > seconds_; }
+
+namespace {
+
+void finish(const Problem& problem, double tolerance, Status ending, Result& result) {
+  result.certificate = certify(problem, result.z, &result.w);
+  result.status = judge(result.certificate, tolerance, ending);
+  if (is_solved(result.status)) {
+    result.ray.resize(0);
+    return;
+  }
+  if (result.ray.size() > 0) {
+    const RayVerdict verdict = judge_ray(problem, result.ray);
+    result.status = verdict.status;
+    result.ray_bound = verdict.bound;
+  }
+}
+
+}  // namespace
+
+void Solver::solve(const Problem& problem, Result& result, const Vector* warm_start) {
+  check_shapes(problem);
+  settings().validate();
+  const Index n = problem.size();
+  if (warm_start != nullptr && warm_start->size() != n) {
+    throw std::invalid_argument("warm_start: " + std::to_string(warm_start->size()) +
+                                " numbers for a problem of " + std::to_string(n) + " rows");
+  }
+  if (const std::string why = refuses(problem); !why.empty()) {
+    throw std::invalid_argument(std::string(name()) + ": " + why);
+  }
+  const Deadline deadline(settings().time_limit);
+  result.solver = name();
+  result.detail.clear();
+  result.z.setConstant(n, Certificate::kNaN);
+  result.w.setConstant(n, Certificate::kNaN);
+  result.certificate = {};
+  result.ray.resize(0);
+  result.ray_bound = 0.0;
+  result.statistics = {};
+  if (std::string bad = find_bad_value(problem); !bad.empty()) {
+    result.status = Status::kInvalidInput;
+    result.detail = std::move(bad);
+  } else {
+    const bool start_is_finite = warm_start == nullptr || warm_start->allFinite();
+    const Status ending =
+        n == 0 ? Status::kSolved
+               : iterate(problem, start_is_finite ? warm_start : nullptr, deadline, result);
+    finish(problem, settings().tolerance,
+           is_solved(ending) ? Status::kNumericalBreakdown : ending, result);
+    if (!start_is_finite) {
+      result.detail += result.detail.empty() ? "" : "; ";
+      result.detail += "warm start not finite, not used";
+    }
+  }
+  result.statistics.solve_seconds = deadline.elapsed_seconds();
+}
+
+}  // namespace signorini::lcp

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <signorini/lcp/problem.h>
+#include <signorini/lcp/result.h>
+
+#include <chrono>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string_view>
+
+namespace signorini::lcp {
+
+/// What every solver is told. Its own settings derive from these.
+struct SolverSettings {
+  /// Both residuals of the certificate must be at most this. Dimensionless, > 0. 1e-8 is what the
+  /// field's exact solvers aim at; below 1e-12 most contact problems meet their rounding floor.
+  double tolerance = 1e-8;
+  /// Pivots, sweeps or iterations, the solver's own unit; -1: the solver's own default.
+  int max_iterations = -1;
+  /// Seconds of wall time, > 0. A solve limited by time does not give the same answer twice.
+  double time_limit = std::numeric_limits<double>::infinity();
+
+  /// @throws std::invalid_argument that names the setting, its value and the bound.
+  void validate() const;
+};
+
+/// A clock that a solver asks now and then.
+class Deadline {
+ public:
+  explicit Deadline(double seconds);
+  [[nodiscard]] bool passed() const;
+  [[nodiscard]] double elapsed_seconds() const;
+
+ private:
+  std::chrono::steady_clock::time_point start_;
+  double seconds_;
+};
+
+/// One solver: its settings and its workspace, which grows to the largest problem it has seen. Not
+/// for two threads at once; two solvers share nothing.
+class Solver {
+ public:
+  virtual ~Solver() = default;
+
+  /// The name used by make_solver() and signorini-solve.
+  [[nodiscard]] virtual std::string_view name() const = 0;
+  /// Why this solver cannot take this problem ("takes an LCP; row 3 is free"), or empty if it can.
+  [[nodiscard]] virtual std::string refuses(const Problem& problem) const = 0;
+
+  /// Solves the problem; whatever the solver believes, status and certificate come from certify(),
+  /// judge() and judge_ray() on the caller's data.
+  ///
+  /// @param warm_start null, or n numbers to start from, for solvers that can use them; others
+  /// ignore it
+  /// @throws std::invalid_argument for wrong shapes, for wrong settings, and for a problem that
+  /// refuses() names; result is then untouched. Bad values (NaN) end in kInvalidInput instead.
+  void solve(const Problem& problem, Result& result, const Vector* warm_start = nullptr);
+
+ protected:
+  virtual const SolverSettings& settings() const = 0;
+  /// The iteration. Writes result.z (n finite numbers: the best iterate), result.ray if it ended on
+  /// one, result.detail and result.statistics, and returns what ended it if the certificate does
+  /// not say solved: kIterationLimit, kTimeLimit, kStalled, kNumericalBreakdown, or kRayUnproven
+  /// together with result.ray. Called with n >= 1 and finite data.
+  virtual Status iterate(const Problem& problem, const Vector* warm_start, const Deadline& deadline,
+                         Result& result) = 0;
+};
+
+/// Names that make_solver() knows, in the order to show them.
+[[nodiscard]] std::span<const std::string_view> solver_names();
+
+/// A solver by name, with its default settings but these.
+/// @throws std::invalid_argument that lists the known names.
+[[nodiscard]] std::unique_ptr<Solver> make_solver(std::string_view name,
+                                                  const SolverSettings& settings = {});
+
+}  // namespace signorini::lcp
