@@ -7,9 +7,9 @@
 
 namespace signorini::collision {
 
-/// The colliders of a scene: makes contact sets and contact times for a stepper. Pairs of which no body
-/// is dynamic, and pairs of one body, are skipped. Contacts come in an order that depends on the
-/// colliders' order alone.
+/// The colliders of a scene: makes contact sets and contact times for a stepper. Pairs of which no
+/// body is dynamic, and pairs of one body, are skipped. Contacts come in an order that depends on
+/// the colliders' order alone.
 class CollisionWorld final : public ContactFinder {
  public:
   /// @throws std::invalid_argument naming the collider and the field.

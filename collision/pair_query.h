@@ -9,30 +9,30 @@
 
 namespace signorini::collision {
 
-/// Test-intersection query: do the two closed shapes share a point? Two half-spaces intersect unless
-/// they face each other across a gap.
+/// Test-intersection query: do the two closed shapes share a point? Two half-spaces intersect
+/// unless they face each other across a gap.
 [[nodiscard]] bool test_intersection(const Shape& a, const Pose& pose_a, const Shape& b,
                                      const Pose& pose_b);
 
-/// Find-intersection query: the reduced contact set, every contact with gap <= margin. Geometry only:
-/// body_a = 0, body_b = 1 and no material; feature_id is of the pair of features alone.
+/// Find-intersection query: the reduced contact set, every contact with gap <= margin. Geometry
+/// only: body_a = 0, body_b = 1 and no material; feature_id is of the pair of features alone.
 ///
 /// Face-face: the incident face clipped against the reference face (its vertices inside, and the
 /// crossings of the edges). Edge-face: the end points (or clipped ends) of the edge. Edge-edge, not
-/// parallel: the one point pair of closest approach. Exchange of A and B gives the same points with N
-/// reversed. Two half-spaces: none are reported (both are immovable).
+/// parallel: the one point pair of closest approach. Exchange of A and B gives the same points with
+/// N reversed. Two half-spaces: none are reported (both are immovable).
 /// @param margin m, >= 0
 void find_intersection(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
                        double margin, std::vector<Contact>& contacts);
 
-/// Signed distance: > 0 apart (the distance), < 0 overlapping (minus the least translation that ends
-/// the overlap).
+/// Signed distance: > 0 apart (the distance), < 0 overlapping (minus the least translation that
+/// ends the overlap).
 [[nodiscard]] double signed_distance(const Shape& a, const Pose& pose_a, const Shape& b,
                                      const Pose& pose_b);
 
-/// Contact time: the first t in [0, duration] at which the shapes touch while approaching, along the
-/// given motions (of the *shape* frames), by conservative advancement. Touching at t = 0 counts only if
-/// approaching; pairs that touch and rest or separate report their next approach.
+/// Contact time: the first t in [0, duration] at which the shapes touch while approaching, along
+/// the given motions (of the *shape* frames), by conservative advancement. Touching at t = 0 counts
+/// only if approaching; pairs that touch and rest or separate report their next approach.
 /// @return nothing if they do not come into contact.
 [[nodiscard]] std::optional<double> contact_time(const Shape& a, const Motion& motion_a,
                                                  const Shape& b, const Motion& motion_b,

@@ -26,16 +26,17 @@ using Shape = std::variant<Sphere, Box, HalfSpace>;
 
 /// A shape fixed to a body.
 struct Collider {
-  int body = -1;       ///< index into Bodies
+  int body = -1;  ///< index into Bodies
   Shape shape;
-  Pose local;          ///< shape frame in the body frame (whose origin is the centre of mass)
+  Pose local;  ///< shape frame in the body frame (whose origin is the centre of mass)
   Material material;
-  std::string name;    ///< for reports
+  std::string name;  ///< for reports
 };
 
 /// @throws std::invalid_argument naming the shape, the field, its value and the bound.
 void validate(const Shape& shape);
-/// The shape, its pose (finite, unit quaternion to 1e-6), its material, its body in [0, body_count).
+/// The shape, its pose (finite, unit quaternion to 1e-6), its material, its body in [0,
+/// body_count).
 void validate(const Collider& collider, int body_count);
 
 /// Mass and inertia about the centre of mass, shape axes, of a solid of uniform density.
@@ -43,8 +44,8 @@ struct MassProperties {
   double mass;   ///< kg
   Mat3 inertia;  ///< kg m^2
 };
-/// Sphere: 2/5 m r^2. Box: m/12 (b^2 + c^2) with full edges. @throws std::invalid_argument for a half-space,
-/// which has none.
+/// Sphere: 2/5 m r^2. Box: m/12 (b^2 + c^2) with full edges. @throws std::invalid_argument for a
+/// half-space, which has none.
 [[nodiscard]] MassProperties mass_properties(const Shape& shape, double density);
 
 /// The largest distance of a point of the shape from the origin of a frame in which the shape has

@@ -10,7 +10,8 @@ namespace {
 void check_block(const MatrixRef& block, const char* what) {
   if (block.rows() != block.cols() || block.rows() == 0) {
     throw std::invalid_argument(std::string(what) + ": must be square and not empty, got " +
-                                std::to_string(block.rows()) + " x " + std::to_string(block.cols()));
+                                std::to_string(block.rows()) + " x " +
+                                std::to_string(block.cols()));
   }
   if (!block.allFinite()) {
     throw std::invalid_argument(std::string(what) + ": must be finite");

@@ -31,8 +31,8 @@ struct Certificate {
   /// max_i |D_i r_i(D_i)| / (D_i |z_i| + (|M||z|)_i + |q_i|): small when z is exact for slightly
   /// other data.
   double backward_error = kNaN;
-  double min_z = kNaN;            ///< min_i z_i over the rows with lower = 0 (else NaN), caller's units
-  double min_w = kNaN;            ///< min_i w_i over the rows with upper = inf and lower = 0
+  double min_z = kNaN;  ///< min_i z_i over the rows with lower = 0 (else NaN), caller's units
+  double min_w = kNaN;  ///< min_i w_i over the rows with upper = inf and lower = 0
   double complementarity = kNaN;  ///< |z.w| over the rows that are neither free nor boxed
   int worst_row = -1;             ///< the row of the unit-free residual, -1 if n = 0
 };

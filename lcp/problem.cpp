@@ -9,7 +9,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-[[noreturn]] void fail(const std::string& what) { throw std::invalid_argument("Problem: " + what); }
+[[noreturn]] void fail(const std::string& what) {
+  throw std::invalid_argument("Problem: " + what);
+}
 
 std::string indexed(const char* name, Index i, double value) {
   return std::string(name) + "[" + std::to_string(i) + "] is " + std::to_string(value);

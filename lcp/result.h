@@ -10,21 +10,21 @@ namespace signorini::lcp {
 
 /// What a solve cost. Counters start at -1: "this solver has no such thing".
 struct Statistics {
-  int iterations = -1;       ///< sweeps or outer iterations
-  int pivots = -1;           ///< exchanges of one basic variable
-  int factorizations = -1;   ///< of any matrix, from scratch
-  int refinements = -1;      ///< iterative refinement steps
-  double solve_seconds = -1; ///< wall time of solve(), certificate included
+  int iterations = -1;        ///< sweeps or outer iterations
+  int pivots = -1;            ///< exchanges of one basic variable
+  int factorizations = -1;    ///< of any matrix, from scratch
+  int refinements = -1;       ///< iterative refinement steps
+  double solve_seconds = -1;  ///< wall time of solve(), certificate included
 };
 
 /// What a solve returns. Every member is written on every call.
 struct Result {
   Status status = Status::kNotRun;
-  std::string solver;       ///< the solver's name, with the variant that ended the solve
-  std::string detail;       ///< why it ended so, one line, empty if there is nothing to add. Whatever
-                            ///< was done to the problem (scaling apart) is said here.
-  Vector z;                 ///< n: the answer, or the best iterate, or NaN (see Status)
-  Vector w;                 ///< n: M z + q, recomputed from the caller's data
+  std::string solver;  ///< the solver's name, with the variant that ended the solve
+  std::string detail;  ///< why it ended so, one line, empty if there is nothing to add. Whatever
+                       ///< was done to the problem (scaling apart) is said here.
+  Vector z;            ///< n: the answer, or the best iterate, or NaN (see Status)
+  Vector w;            ///< n: M z + q, recomputed from the caller's data
   Certificate certificate;  ///< of z; recomputed from the caller's data
   Vector ray;               ///< y of RayVerdict if the solve ended on a ray, else empty
   double ray_bound = 0.0;   ///< Z: every feasible z has |z|_1 >= Z. 0: nothing is known

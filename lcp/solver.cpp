@@ -12,8 +12,9 @@ void SolverSettings::validate() const {
                                 std::to_string(tolerance));
   }
   if (max_iterations < -1) {
-    throw std::invalid_argument("settings: max_iterations: must be >= 0, or -1 for the default, got " +
-                                std::to_string(max_iterations));
+    throw std::invalid_argument(
+        "settings: max_iterations: must be >= 0, or -1 for the default, got " +
+        std::to_string(max_iterations));
   }
   if (!(time_limit > 0.0)) {
     throw std::invalid_argument("settings: time_limit: must be > 0 s, got " +
@@ -27,7 +28,9 @@ double Deadline::elapsed_seconds() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
 }
 
-bool Deadline::passed() const { return elapsed_seconds() > seconds_; }
+bool Deadline::passed() const {
+  return elapsed_seconds() > seconds_;
+}
 
 namespace {
 
@@ -75,8 +78,8 @@ void Solver::solve(const Problem& problem, Result& result, const Vector* warm_st
     const Status ending =
         n == 0 ? Status::kSolved
                : iterate(problem, start_is_finite ? warm_start : nullptr, deadline, result);
-    finish(problem, settings().tolerance,
-           is_solved(ending) ? Status::kNumericalBreakdown : ending, result);
+    finish(problem, settings().tolerance, is_solved(ending) ? Status::kNumericalBreakdown : ending,
+           result);
     if (!start_is_finite) {
       result.detail += result.detail.empty() ? "" : "; ";
       result.detail += "warm start not finite, not used";

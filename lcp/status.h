@@ -18,7 +18,8 @@ enum class Status : std::uint8_t {
   kIterationLimit,      ///< the iteration limit was reached
   kTimeLimit,           ///< the time limit was reached
   kStalled,             ///< the method converged or stopped making progress short of the tolerance
-  kNumericalBreakdown,  ///< a factorisation or a pivot failed, or the certificate refused the answer
+  kNumericalBreakdown,  ///< a factorisation or a pivot failed, or the certificate refused the
+                        ///< answer
   kInvalidInput,        ///< NaN, infinity or crossed bounds in the problem; nothing was computed
 };
 

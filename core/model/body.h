@@ -17,20 +17,20 @@ enum class BodyKind : unsigned char {
 /// axes are the user's, the inertia tensor need not be diagonal.
 struct Body {
   BodyKind kind = BodyKind::kDynamic;
-  double mass = 1.0;               ///< kg, > 0 (dynamic bodies)
-  Mat3 inertia = Mat3::Identity(); ///< J_body about the centre of mass, body axes, kg m^2
-  double gravity_scale = 1.0;      ///< 0: gravity does not act on this body (dimensionless)
-  std::string name;                ///< for reports
+  double mass = 1.0;                ///< kg, > 0 (dynamic bodies)
+  Mat3 inertia = Mat3::Identity();  ///< J_body about the centre of mass, body axes, kg m^2
+  double gravity_scale = 1.0;       ///< 0: gravity does not act on this body (dimensionless)
+  std::string name;                 ///< for reports
 
   [[nodiscard]] bool is_dynamic() const { return kind == BodyKind::kDynamic; }
 };
 
 /// What does: S = [x, q, p, L] of the notes, section 2. All in world axes.
 struct BodyState {
-  Vec3 x = Vec3::Zero();       ///< centre of mass, m
-  Quat q = Quat::Identity();   ///< orientation, unit
-  Vec3 p = Vec3::Zero();       ///< momentum, kg m/s (kinematic bodies: v itself, m/s)
-  Vec3 L = Vec3::Zero();       ///< angular momentum about x, kg m^2/s (kinematic bodies: w, rad/s)
+  Vec3 x = Vec3::Zero();      ///< centre of mass, m
+  Quat q = Quat::Identity();  ///< orientation, unit
+  Vec3 p = Vec3::Zero();      ///< momentum, kg m/s (kinematic bodies: v itself, m/s)
+  Vec3 L = Vec3::Zero();      ///< angular momentum about x, kg m^2/s (kinematic bodies: w, rad/s)
 
   [[nodiscard]] Pose pose() const { return {x, q}; }
 };
@@ -47,12 +47,12 @@ struct Velocity {
   [[nodiscard]] Vec3 at(const Vec3& r) const { return linear + angular.cross(r); }
 };
 
-/// Checks a body. @throws std::invalid_argument naming the body, the field, its value and the bound:
-/// mass finite and > 0; inertia finite, symmetric to 1e-9, positive definite, and each principal
-/// moment at most the sum of the other two (triangle inequality) to 1e-9 relative.
+/// Checks a body. @throws std::invalid_argument naming the body, the field, its value and the
+/// bound: mass finite and > 0; inertia finite, symmetric to 1e-9, positive definite, and each
+/// principal moment at most the sum of the other two (triangle inequality) to 1e-9 relative.
 void validate(const Body& body);
-/// Checks a state against its bodies: same length, all finite, |q| within 1e-6 of 1, fixed bodies at
-/// rest. @throws std::invalid_argument naming the body and the field.
+/// Checks a state against its bodies: same length, all finite, |q| within 1e-6 of 1, fixed bodies
+/// at rest. @throws std::invalid_argument naming the body and the field.
 void validate(const Bodies& bodies, const State& state);
 
 /// J^-1 in world axes: R J_body^-1 R^T; zero unless dynamic.
@@ -68,6 +68,7 @@ void set_velocity(const Body& body, const Velocity& velocity, BodyState& state);
 /// The sum over all dynamic bodies.
 [[nodiscard]] double kinetic_energy(const Bodies& bodies, const State& state);
 /// Potential energy in a uniform field: -sum m gravity_scale g.x, dynamic bodies. J.
-[[nodiscard]] double potential_energy(const Bodies& bodies, const State& state, const Vec3& gravity);
+[[nodiscard]] double potential_energy(const Bodies& bodies, const State& state,
+                                      const Vec3& gravity);
 
 }  // namespace signorini

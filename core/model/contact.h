@@ -44,7 +44,7 @@ struct LocalSurface {
 struct Contact {
   static constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-  int body_a = -1;                      ///< index into Bodies and State
+  int body_a = -1;  ///< index into Bodies and State
   int body_b = -1;
   Vec3 point_a = Vec3::Constant(kNaN);  ///< P_A on the surface of A, world, m
   Vec3 point_b = Vec3::Constant(kNaN);  ///< P_B on the surface of B; P_A - P_B = d N
@@ -54,17 +54,17 @@ struct Contact {
   /// The same pair of features has the same id from step to step, whatever else touches.
   std::uint64_t feature_id = 0;
   NormalOwner owner = NormalOwner::kFaceB;
-  LocalSurface surface_a;               ///< for N' and d''
+  LocalSurface surface_a;  ///< for N' and d''
   LocalSurface surface_b;
-  Material material;                    ///< of the pair, by the pairing rule
+  Material material;  ///< of the pair, by the pairing rule
 };
 
 /// The reduced contact set of a state, in an order that depends on the input alone.
 using ContactSet = std::vector<Contact>;
 
 /// Checks a contact set that came from outside. @throws std::invalid_argument naming the contact's
-/// number, the field, its value and the bound: bodies in range and different, points and gap finite,
-/// |N| within 1e-9 of 1 (a zero normal is named as such), material valid.
+/// number, the field, its value and the bound: bodies in range and different, points and gap
+/// finite, |N| within 1e-9 of 1 (a zero normal is named as such), material valid.
 void validate(const ContactSet& contacts, int body_count);
 
 }  // namespace signorini

@@ -11,7 +11,8 @@ enum class OrientationScheme : std::uint8_t {
 };
 
 enum class Integrator : std::uint8_t {
-  kSemiImplicit,  ///< p, L first, then x and orientation with the new v and w; first order, symplectic in x
+  kSemiImplicit,  ///< p, L first, then x and orientation with the new v and w; first order,
+                  ///< symplectic in x
   kRungeKutta4,   ///< classical RK4 on the whole state; fourth order
 };
 
@@ -25,8 +26,8 @@ struct MatrixState {
 
 /// S' = [p/m, 1/2 w q (or Skew(w) R), F, tau] integrated over one step of `step` seconds with force
 /// and torque constant during the step (world axes, N and N m). Only dynamic bodies move by loads;
-/// kinematic bodies keep their velocity; fixed ones do nothing. The quaternion is normalised and the
-/// matrix is NOT orthonormalised here: see gram_schmidt().
+/// kinematic bodies keep their velocity; fixed ones do nothing. The quaternion is normalised and
+/// the matrix is NOT orthonormalised here: see gram_schmidt().
 void integrate_free(const Body& body, const Vec3& force, const Vec3& torque, double step,
                     Integrator integrator, BodyState& state);
 void integrate_free(const Body& body, const Vec3& force, const Vec3& torque, double step,

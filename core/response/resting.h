@@ -38,8 +38,9 @@ struct RestingReport {
 /// @param driven_acceleration of kinematic bodies: v' (force) and w' (torque) in the same struct;
 /// empty: they move uniformly
 void resting_forces(const Bodies& bodies, const State& state, const ContactSet& contacts,
-                    const std::vector<Wrench>& loads, const std::vector<Wrench>& driven_acceleration,
-                    const RestingSettings& settings, RestingReport& report);
+                    const std::vector<Wrench>& loads,
+                    const std::vector<Wrench>& driven_acceleration, const RestingSettings& settings,
+                    RestingReport& report);
 
 /// F = m gravity_scale g for every dynamic body, no torque.
 [[nodiscard]] std::vector<Wrench> gravity_loads(const Bodies& bodies, const Vec3& gravity);

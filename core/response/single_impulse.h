@@ -7,10 +7,11 @@ namespace signorini {
 
 /// The impulse of one contact in closed form (notes, sections 3 and 4).
 struct SingleImpulse {
-  double denominator = 0.0;  ///< A_ii = 1/m_A + 1/m_B + (r_A x N)^T J_A^-1 (r_A x N) + (... B), 1/kg
-  double d_dot = 0.0;        ///< d'-, m/s
-  double f_min = 0.0;        ///< -d'- / A_ii, N s: the least that stops the approach (e = 0)
-  double f_max = 0.0;        ///< 2 f_min, N s: the most that gains no kinetic energy (e = 1)
+  double denominator =
+      0.0;             ///< A_ii = 1/m_A + 1/m_B + (r_A x N)^T J_A^-1 (r_A x N) + (... B), 1/kg
+  double d_dot = 0.0;  ///< d'-, m/s
+  double f_min = 0.0;  ///< -d'- / A_ii, N s: the least that stops the approach (e = 0)
+  double f_max = 0.0;  ///< 2 f_min, N s: the most that gains no kinetic energy (e = 1)
 };
 
 /// f in [f_min, f_max] is e in [0, 1]: f = (1 + e) f_min. A separating contact (d'- >= 0) has

@@ -12,7 +12,7 @@
 namespace signorini {
 
 struct TimeStepSettings {
-  double step = 1.0 / 240.0;           ///< h, s, > 0
+  double step = 1.0 / 240.0;             ///< h, s, > 0
   Vec3 gravity = Vec3(0.0, 0.0, -9.81);  ///< m/s^2
   OrientationScheme orientation = OrientationScheme::kQuaternion;
   Integrator integrator = Integrator::kSemiImplicit;
@@ -32,20 +32,20 @@ struct TimeStepSettings {
 /// What one step did.
 struct StepReport {
   lcp::Status status = lcp::Status::kNotRun;  ///< of the velocity problem
-  ContactSet contacts;         ///< those in the problem
-  lcp::Vector normal_impulses; ///< N s
-  std::vector<Vec3> impulses;  ///< whole contact impulses on A, world, N s
-  double kinetic_energy = 0.0;       ///< after the step, J
-  double potential_energy = 0.0;     ///< J
-  double energy_change_impact = 0.0; ///< kinetic energy change by the contact impulses, J
+  ContactSet contacts;                        ///< those in the problem
+  lcp::Vector normal_impulses;                ///< N s
+  std::vector<Vec3> impulses;                 ///< whole contact impulses on A, world, N s
+  double kinetic_energy = 0.0;                ///< after the step, J
+  double potential_energy = 0.0;              ///< J
+  double energy_change_impact = 0.0;          ///< kinetic energy change by the contact impulses, J
   double energy_change_projection = 0.0;  ///< potential energy change by the position projection, J
-  double deepest_overlap = 0.0;      ///< max(0, -gap) over the contacts at the start of the step, m
+  double deepest_overlap = 0.0;  ///< max(0, -gap) over the contacts at the start of the step, m
   lcp::Result result;
-  std::string detail;          ///< one line: anything beyond the plain scheme
+  std::string detail;  ///< one line: anything beyond the plain scheme
 };
 
-/// Velocity-level time stepping with Coulomb friction as a k-sided pyramid (Stewart and Trinkle 1996;
-/// Anitescu and Potra 1997), all contacts in one LCP:
+/// Velocity-level time stepping with Coulomb friction as a k-sided pyramid (Stewart and Trinkle
+/// 1996; Anitescu and Potra 1997), all contacts in one LCP:
 ///
 ///     M (v+ - v-) = h F + J_n^T f_n + J_t^T beta
 ///     0 <= f_n  ⊥ J_n v+ + gap/h (gap > 0 only) + e d'- (touching, colliding) >= 0

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace signorini::validation {
+
+/// What is known about a number.
+enum class Verdict : unsigned char {
+  kPass,
+  kFail,
+  kInformation,  ///< shown, not judged (what the other engine measures, where no tolerance is owed)
+};
+
+/// One comparison of a scene: a value, what it should be, and the tolerance with its reason.
+struct Check {
+  std::string name;       ///< "apex height after the first bounce"
+  std::string engine;     ///< "signorini" or "bullet"
+  std::string reference;  ///< "closed form", "bullet", "conservation law", "exact arithmetic"
+  std::string unit;       ///< "m", "J", "1" ...
+  double value = 0.0;
+  double expected = 0.0;
+  double error = 0.0;      ///< as the tolerance measures it
+  double tolerance = 0.0;  ///< error <= tolerance passes; ignored for kInformation
+  std::string error_kind;  ///< "absolute" or "relative"
+  std::string reason;      ///< why this tolerance, or where the closed form comes from
+  Verdict verdict = Verdict::kInformation;
+};
+
+/// One line of a plot.
+struct Series {
+  std::string name;    ///< "height of the ball"
+  std::string engine;  ///< "signorini", "bullet" or "closed form": sets the colour
+  std::vector<double> x;
+  std::vector<double> y;
+};
+
+struct Plot {
+  std::string title;
+  std::string x_label;  ///< with unit: "time [s]"
+  std::string y_label;
+  bool log_y = false;
+  std::vector<Series> series;
+};
+
+/// Free text and numbers, for what is no time series: the wedge's rows, the cradle's laws.
+struct Table {
+  std::string title;
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> rows;
+};
+
+struct SceneReport {
+  std::string name;  ///< "ball-drop-e0.5"
+  std::string title;
+  std::string description;  ///< a paragraph: what happens, what is compared, where it comes from
+  std::string source;       ///< the scene's file, or "built in code: SDF cannot say it"
+  std::string command;      ///< repeats this scene
+  std::vector<std::string> settings;  ///< how each engine was run; Bullet's profile, printed whole
+  std::vector<std::string> notices;   ///< what of the file was ignored, and anything odd
+  std::vector<Check> checks;
+  std::vector<Plot> plots;
+  std::vector<Table> tables;
+  double signorini_seconds = -1.0;  ///< wall time of the run; -1: not run
+  double bullet_seconds = -1.0;
+
+  /// kFail if any check failed, kPass if at least one passed and none failed, else kInformation.
+  [[nodiscard]] Verdict verdict() const;
+};
+
+struct Report {
+  static constexpr int kSchemaVersion = 1;
+  std::string command;   ///< the whole command line
+  std::string version;   ///< of signorini
+  std::string engines;   ///< versions: Bullet's, libsdformat's
+  bool partial = false;  ///< the run was interrupted
+  std::vector<SceneReport> scenes;
+};
+
+/// report.json, report.md and (if the build had node) report.html in a folder, each written whole
+/// or not at all. @return the files written. @throws std::runtime_error naming the file.
+std::vector<std::string> write_report(const Report& report, const std::string& folder);
+
+}  // namespace signorini::validation
