@@ -1,9 +1,18 @@
 # install + export + build-tree export. A component is a library: find_package(signorini COMPONENTS lcp).
+# Each has an export set of its own, so that asking for one does not ask for the others' dependencies.
 include(CMakePackageConfigHelpers)
 
+set(SIGNORINI_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/signorini)
 get_property(libraries GLOBAL PROPERTY SIGNORINI_LIBRARIES)
+foreach(target ${libraries})
+  string(REPLACE signorini_ "" component ${target})
+  install(TARGETS ${target} EXPORT signorini-${component}-targets)
+  install(EXPORT signorini-${component}-targets NAMESPACE signorini:: DESTINATION ${SIGNORINI_CMAKE_DIR})
+  export(EXPORT signorini-${component}-targets NAMESPACE signorini::
+         FILE ${PROJECT_BINARY_DIR}/signorini-${component}-targets.cmake)
+endforeach()
+
 get_property(programs GLOBAL PROPERTY SIGNORINI_PROGRAMS)
-install(TARGETS ${libraries} EXPORT signorini-targets)
 if(programs)
   install(TARGETS ${programs})
 endif()
@@ -11,14 +20,13 @@ foreach(part lcp core collision)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${part} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/signorini
           FILES_MATCHING PATTERN "*.h")
 endforeach()
-install(EXPORT signorini-targets NAMESPACE signorini::
-        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/signorini)
-export(EXPORT signorini-targets NAMESPACE signorini:: FILE ${PROJECT_BINARY_DIR}/signorini-targets.cmake)
+
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/signorini-config.cmake.in
-  ${PROJECT_BINARY_DIR}/signorini-config.cmake
-  INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/signorini)
+  ${PROJECT_BINARY_DIR}/signorini-config.cmake INSTALL_DESTINATION ${SIGNORINI_CMAKE_DIR})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/signorini-config-version.cmake
   COMPATIBILITY SameMinorVersion)
+file(COPY ${PROJECT_SOURCE_DIR}/cmake/FindGMP.cmake DESTINATION ${PROJECT_BINARY_DIR})
 install(FILES ${PROJECT_BINARY_DIR}/signorini-config.cmake
               ${PROJECT_BINARY_DIR}/signorini-config-version.cmake
-        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/signorini)
+              ${PROJECT_SOURCE_DIR}/cmake/FindGMP.cmake
+        DESTINATION ${SIGNORINI_CMAKE_DIR})
