@@ -48,11 +48,14 @@ struct Velocity {
 };
 
 /// Checks a body. @throws std::invalid_argument naming the body, the field, its value and the
-/// bound: mass finite and > 0; inertia finite, symmetric to 1e-9, positive definite, and each
-/// principal moment at most the sum of the other two (triangle inequality) to 1e-9 relative.
+/// bound: gravity_scale finite, and for dynamic bodies (the mass and inertia of the others are
+/// never used): mass finite and > 0; inertia finite, symmetric to 1e-9 of its largest entry,
+/// positive definite, and each principal moment at most the sum of the other two (triangle
+/// inequality) to 1e-9 relative.
 void validate(const Body& body);
 /// Checks a state against its bodies: same length, all finite, |q| within 1e-6 of 1, fixed bodies
-/// at rest. @throws std::invalid_argument naming the body and the field.
+/// at rest (p = L = 0). @throws std::invalid_argument naming the body, the field, its value and the
+/// bound.
 void validate(const Bodies& bodies, const State& state);
 
 /// J^-1 in world axes: R J_body^-1 R^T; zero unless dynamic.

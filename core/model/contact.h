@@ -64,7 +64,8 @@ using ContactSet = std::vector<Contact>;
 
 /// Checks a contact set that came from outside. @throws std::invalid_argument naming the contact's
 /// number, the field, its value and the bound: bodies in range and different, points and gap
-/// finite, |N| within 1e-9 of 1 (a zero normal is named as such), material valid.
+/// finite, |N| within 1e-9 of 1 (a zero normal is named as such), radii of the surfaces in
+/// [0, infinity] and their directions unit to 1e-9, material valid.
 void validate(const ContactSet& contacts, int body_count);
 
 }  // namespace signorini

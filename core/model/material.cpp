@@ -1,4 +1,5 @@
 #include <signorini/core/model/material.h>
+#include <signorini/core/model/number_text.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,11 +24,11 @@ double combine(double a, double b, PairingRule rule) {
 void validate(const Material& material) {
   if (!(material.friction >= 0.0) || !std::isfinite(material.friction)) {
     throw std::invalid_argument("material: friction: must be finite and >= 0, got " +
-                                std::to_string(material.friction));
+                                number_text(material.friction));
   }
   if (!(material.restitution >= 0.0 && material.restitution <= 1.0)) {
     throw std::invalid_argument("material: restitution: must be in [0, 1], got " +
-                                std::to_string(material.restitution));
+                                number_text(material.restitution));
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include <signorini/core/model/body.h>
 
+#include <cstdint>
+
 namespace signorini {
 
 /// How the orientation is integrated (notes, section 2).
