@@ -7,6 +7,8 @@
 namespace signorini {
 namespace {
 
+constexpr double kIndependent = 1e-12;  // sine of the angle between U0 and U1
+
 // The two ways to hold an orientation, as an Eigen value that can be added and scaled.
 struct QuaternionForm {
   using Value = Eigen::Vector4d;  // x, y, z, w: the coefficients of Eigen's quaternion
@@ -26,9 +28,9 @@ Vec3 angular_velocity(const Body& body, const Mat3& R, const Vec3& L) {
   switch (body.kind) {
     case BodyKind::kDynamic: return R * (body.inertia.inverse() * (R.transpose() * L));
     case BodyKind::kKinematic: return L;
-    case BodyKind::kFixed: break;
+    case BodyKind::kFixed: return Vec3::Zero();
   }
-  return Vec3::Zero();
+  throw std::invalid_argument("body: kind: not one of dynamic, kinematic, fixed");
 }
 
 template <typename Form>
@@ -87,6 +89,9 @@ MatrixState matrix_state(const BodyState& state) {
 void integrate_free(const Body& body, const Vec3& force, const Vec3& torque, double step,
                     Integrator integrator, BodyState& state) {
   validate_step(force, torque, step);
+  if (body.kind == BodyKind::kFixed) {
+    return;
+  }
   const Vec3 load = body.is_dynamic() ? torque : Vec3::Zero();
   state.q = Quat(advance_orientation<QuaternionForm>(body, state.L, load, step, integrator,
                                                      state.q.coeffs()))
@@ -98,6 +103,9 @@ void integrate_free(const Body& body, const Vec3& force, const Vec3& torque, dou
 void integrate_free(const Body& body, const Vec3& force, const Vec3& torque, double step,
                     Integrator integrator, MatrixState& state) {
   validate_step(force, torque, step);
+  if (body.kind == BodyKind::kFixed) {
+    return;
+  }
   const Vec3 load = body.is_dynamic() ? torque : Vec3::Zero();
   state.R = advance_orientation<MatrixForm>(body, state.L, load, step, integrator, state.R);
   state.L += step * load;
@@ -121,7 +129,8 @@ void gram_schmidt(Mat3& R) {
   const Vec3 u0 = R.col(0) / length0;
   const Vec3 across = R.col(1) - R.col(1).dot(u0) * u0;
   const double length1 = across.norm();
-  if (!(length0 > 0.0 && length1 > 0.0) || !std::isfinite(length0 + length1)) {
+  const double least = kIndependent * R.col(1).norm();
+  if (!(length0 > 0.0 && length1 > least) || !std::isfinite(length0 + length1)) {
     throw std::invalid_argument(
         "gram_schmidt: R: its first two columns must be finite and independent, got " +
         number_text(R.col(0)) + " and " + number_text(R.col(1)));
