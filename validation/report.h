@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace signorini::validation {
@@ -12,7 +13,14 @@ enum class Verdict : unsigned char {
   kInformation,  ///< shown, not judged (what the other engine measures, where no tolerance is owed)
 };
 
+/// "pass", "fail" or "information": the words of report.json.
+[[nodiscard]] std::string_view to_string(Verdict verdict);
+
+/// kPass if error <= tolerance, else kFail; NaN in either fails. Units: those of the check.
+[[nodiscard]] Verdict judge(double error, double tolerance);
+
 /// One comparison of a scene: a value, what it should be, and the tolerance with its reason.
+/// Two checks of a scene with the same name and different engines are shown beside each other.
 struct Check {
   std::string name;       ///< "apex height after the first bounce"
   std::string engine;     ///< "signorini" or "bullet"
@@ -25,14 +33,18 @@ struct Check {
   std::string error_kind;  ///< "absolute" or "relative"
   std::string reason;      ///< why this tolerance, or where the closed form comes from
   Verdict verdict = Verdict::kInformation;
+
+  /// The verdict, except that a claimed kPass whose error is not <= tolerance is a kFail. This is
+  /// what the report shows and what SceneReport::verdict() counts.
+  [[nodiscard]] Verdict judged() const;
 };
 
-/// One line of a plot.
+/// One line of a plot. NaN in y is a gap in the line; equal neighbours in x draw a jump.
 struct Series {
-  std::string name;    ///< "height of the ball"
-  std::string engine;  ///< "signorini", "bullet" or "closed form": sets the colour
-  std::vector<double> x;
-  std::vector<double> y;
+  std::string name;       ///< "height of the ball"
+  std::string engine;     ///< "signorini", "bullet" or "closed form": sets the colour
+  std::vector<double> x;  ///< ascending, finite
+  std::vector<double> y;  ///< as many as x
 };
 
 struct Plot {
@@ -77,8 +89,20 @@ struct Report {
   std::vector<SceneReport> scenes;
 };
 
-/// report.json, report.md and (if the build had node) report.html in a folder, each written whole
-/// or not at all. @return the files written. @throws std::runtime_error naming the file.
+/// report.json, report.md and (if the build had node) report.html in a folder, which is created if
+/// need be. Each file is written whole or not at all: beside its place, then renamed over it. In
+/// report.json and report.html, text
+/// that is not UTF-8 is written with U+FFFD in place of the bad bytes. The fields of report.json
+/// are documented in docs/report-schema.md; NaN and infinity are the strings "NaN", "Infinity" and
+/// "-Infinity". report.html carries the plots thinned to at most 902 points a line (the lowest and
+/// the highest of each stretch are kept) and 7 digits; report.json carries them whole.
+///
+/// @return the paths of the files written. Without report.html, report.md says why.
+/// @throws std::invalid_argument naming scene, plot or table and field, before anything is written:
+///   a series whose x and y differ in length, or whose x is not finite and ascending; a table row
+///   that is not as long as the header.
+/// @throws std::runtime_error naming the file that could not be written, with the system's reason.
+///   Files written before it stay; the one named is as it was before the call.
 std::vector<std::string> write_report(const Report& report, const std::string& folder);
 
 }  // namespace signorini::validation
