@@ -1,0 +1,350 @@
+#include <signorini/lcp/lemke.h>
+#include <signorini/lcp/lemke_ray.h>
+#include <signorini/lcp/ray.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <random>
+#include <stdexcept>
+#include <string>
+
+namespace signorini::lcp {
+namespace {
+
+constexpr int kQ = -1;  // BasisFactor::residual: q instead of a column
+constexpr int kNone = -1;
+constexpr double kSmallPivot = 1e-6;        // of the column: only taken from a fresh factorisation
+constexpr double kRestartTolerance = 30.0;  // pivot tolerance grows by this a restart
+
+void require(bool good, const char* setting, const char* bound, double value) {
+  if (!good) {
+    throw std::invalid_argument(std::string("Lemke settings: ") + setting + ": must be " + bound +
+                                ", got " + std::to_string(value));
+  }
+}
+
+}  // namespace
+
+void LemkeSettings::validate() const {
+  SolverSettings::validate();
+  require(pivot_tolerance > 0.0 && pivot_tolerance <= 1e-2, "pivot_tolerance", "in (0, 1e-2]",
+          pivot_tolerance);
+  require(tie_tolerance > 0.0 && tie_tolerance <= 1e-2, "tie_tolerance", "in (0, 1e-2]",
+          tie_tolerance);
+  require(refactorisation_period >= 1, "refactorisation_period", ">= 1", refactorisation_period);
+  require(refinements_per_solve >= 0 && refinements_per_solve <= 10, "refinements_per_solve",
+          "in 0 .. 10", refinements_per_solve);
+  require(cover_tolerance >= 0.0 && cover_tolerance <= 1e-3, "cover_tolerance", "in [0, 1e-3]",
+          cover_tolerance);
+  require(restarts >= 0, "restarts", ">= 0", restarts);
+  require(polish_rounds >= 0, "polish_rounds", ">= 0", polish_rounds);
+}
+
+Lemke::Lemke(const LemkeSettings& settings) : settings_(settings) {
+  settings_.validate();
+}
+
+std::string Lemke::refuses(const Problem& problem) const {
+  return problem.is_lcp()
+             ? ""
+             : "takes an LCP only: every row 0 <= z_i, w_i >= 0, without other bounds, "
+               "free rows or coupled limits";
+}
+
+Status Lemke::iterate(const Problem& problem, const Vector* /*warm_start*/,
+                      const Deadline& deadline, Result& result) {
+  pivots_ = factorizations_ = refinements_ = restarts_ = 0;
+  early_stop_ = false;
+  polish_.reset_counts();
+  best_.reset(problem);
+  Status status = Status::kNumericalBreakdown;
+  if ((problem.q.array() >= 0.0).all()) {
+    status = Status::kSolved;  // z = 0
+  } else if (!scaled_.assign(problem)) {
+    result.detail = "M is not finite once it is formed and scaled";
+  } else {
+    status = run(problem, deadline, result);
+    describe(result);
+  }
+  result.z = best_.z();
+  result.statistics.pivots = pivots_;
+  result.statistics.factorizations = factorizations_ + polish_.counts().factorizations;
+  result.statistics.refinements = refinements_ + polish_.counts().refinements;
+  return status;
+}
+
+Status Lemke::run(const Problem& problem, const Deadline& deadline, Result& result) {
+  RayVerdict verdict;
+  for (restarts_ = 0;; ++restarts_) {
+    switch (pivot(restarts_, problem, deadline)) {
+      case Ending::kSolved: return Status::kSolved;
+      case Ending::kLimit: return Status::kIterationLimit;
+      case Ending::kTime: return Status::kTimeLimit;
+      case Ending::kRefused: break;
+      case Ending::kRay: {
+        Vector sharpened;
+        const RayVerdict found = sharpen_ray(problem, ray_, sharpened);
+        if (result.ray.size() == 0 || found.bound > verdict.bound) {
+          verdict = found;
+          result.ray = sharpened;
+        }
+        break;
+      }
+    }
+    if (verdict.status == Status::kInfeasible || restarts_ == settings_.restarts) {
+      return result.ray.size() > 0 ? Status::kRayUnproven : Status::kNumericalBreakdown;
+    }
+  }
+}
+
+Lemke::Ending Lemke::pivot(int attempt, const Problem& problem, const Deadline& deadline) {
+  pivot_tolerance_ =
+      std::min(1e-2, settings_.pivot_tolerance * std::pow(kRestartTolerance, attempt));
+  choose_cover(attempt);
+  if (!enter_cover()) {
+    return Ending::kRefused;
+  }
+  const double first_cover = x_[basis_.cover_position()];
+  double finish_below = settings_.cover_tolerance * first_cover;
+  while (true) {
+    if (deadline.passed()) {
+      offer_current();
+      return Ending::kTime;
+    }
+    if (pivots_ >= pivot_limit()) {
+      offer_current();
+      return Ending::kLimit;
+    }
+    if (basis_.updates() >= settings_.refactorisation_period && !refactor()) {
+      return refuse();
+    }
+    solve_refined(entering_, y_);
+    int leaving = choose_leaving();
+    if (basis_.updates() > 0 &&
+        (leaving == kNone || std::abs(y_[leaving]) < kSmallPivot * y_.cwiseAbs().maxCoeff())) {
+      // A ray or a doubtful pivot is believed only from a fresh factorisation.
+      if (!refactor()) {
+        return refuse();
+      }
+      solve_refined(entering_, y_);
+      leaving = choose_leaving();
+    }
+    if (leaving == kNone) {
+      collect_ray();
+      offer_current();
+      return Ending::kRay;
+    }
+    const bool complementary = leaving == basis_.cover_position();
+    exchange(leaving);
+    if (!x_.allFinite()) {
+      return refuse();
+    }
+    if (complementary) {
+      return finish(problem, deadline) ? Ending::kSolved : Ending::kRefused;
+    }
+    if (x_[basis_.cover_position()] <= finish_below) {
+      if (finish(problem, deadline)) {
+        early_stop_ = true;
+        return Ending::kSolved;
+      }
+      finish_below = 1e-2 * x_[basis_.cover_position()];
+    }
+  }
+}
+
+Lemke::Ending Lemke::refuse() {
+  offer_current();
+  return Ending::kRefused;
+}
+
+void Lemke::choose_cover(int attempt) {
+  std::minstd_rand generator(static_cast<unsigned>(attempt) + 1U);
+  const double range = static_cast<double>(std::minstd_rand::max());
+  cover_.resize(scaled_.size());
+  generator.discard(8);
+  for (double& value : cover_) {
+    value = 1.0 + static_cast<double>(generator()) / range;
+  }
+}
+
+bool Lemke::enter_cover() {
+  const Vector& q = scaled_.q();
+  int row = 0;
+  for (int i = 1; i < scaled_.size(); ++i) {
+    // Of equal ratios the last: it is the lexicographic choice for the perturbation (e, e^2, ...).
+    if (q[i] / cover_[i] <= q[row] / cover_[row]) {
+      row = i;
+    }
+  }
+  basis_.reset(scaled_, cover_);
+  basis_.exchange(row, basis_.cover_variable(), Vector(-cover_));
+  entering_ = complement(row);
+  ++pivots_;
+  return refactor();
+}
+
+bool Lemke::refactor() {
+  ++factorizations_;
+  if (!basis_.factor()) {
+    return false;
+  }
+  solve_refined(kQ, x_);
+  return x_.allFinite();
+}
+
+void Lemke::solve_refined(int variable, Vector& x) {
+  if (variable == kQ) {
+    x = scaled_.q();
+  } else {
+    basis_.column(variable, x);
+  }
+  basis_.solve(x);
+  residual_.resize(x.size());
+  for (int k = 0; k < settings_.refinements_per_solve; ++k) {
+    basis_.residual(variable, x, residual_);
+    basis_.solve(residual_);
+    x += residual_;
+    ++refinements_;
+  }
+}
+
+int Lemke::choose_leaving() {
+  const double smallest_pivot = pivot_tolerance_ * y_.cwiseAbs().maxCoeff();
+  const double zero = 1e-15 * x_.cwiseAbs().maxCoeff();
+  double ratio = std::numeric_limits<double>::infinity();
+  for (Index p = 0; p < x_.size(); ++p) {
+    if (y_[p] > smallest_pivot) {
+      ratio = std::min(ratio, std::max(x_[p], 0.0) / y_[p]);
+    }
+  }
+  tied_.clear();
+  for (int p = 0; p < x_.size(); ++p) {
+    const double after = std::max(x_[p], 0.0) - ratio * y_[p];
+    if (y_[p] > smallest_pivot && after <= settings_.tie_tolerance * std::abs(x_[p]) + zero) {
+      if (p == basis_.cover_position()) {
+        return p;
+      }
+      tied_.push_back(p);
+    }
+  }
+  if (tied_.empty()) {
+    return kNone;
+  }
+  return tied_.size() == 1 ? tied_.front() : break_tie();
+}
+
+int Lemke::break_tie() {
+  const Index n = x_.size();
+  const Index count = static_cast<Index>(tied_.size());
+  if (tied_rows_.rows() < n || tied_rows_.cols() < count) {
+    tied_rows_.resize(n, std::max(count, 2 * tied_rows_.cols()));
+  }
+  Vector& row = residual_;
+  for (Index k = 0; k < count; ++k) {
+    row.setZero(n);
+    row[tied_[k]] = 1.0;
+    basis_.solve_transposed(row);
+    tied_rows_.col(k).head(n) = row / y_[tied_[k]];
+  }
+  std::vector<Index> left(count);
+  std::iota(left.begin(), left.end(), Index{0});
+  for (Index c = 0; c < n && left.size() > 1; ++c) {
+    Index least = left.front();
+    for (const Index k : left) {
+      least = tied_rows_(c, k) < tied_rows_(c, least) ? k : least;
+    }
+    const double bound = tied_rows_(c, least);
+    std::erase_if(left, [&](Index k) {
+      const double noise =
+          settings_.tie_tolerance * tied_rows_.col(k).head(n).cwiseAbs().maxCoeff();
+      return tied_rows_(c, k) > bound + noise;
+    });
+  }
+  const Index chosen = *std::max_element(
+      left.begin(), left.end(), [this](Index a, Index b) { return y_[tied_[a]] < y_[tied_[b]]; });
+  return tied_[chosen];
+}
+
+void Lemke::exchange(int position) {
+  const double step = std::max(x_[position], 0.0) / y_[position];
+  const int leaving_variable = basis_.at(position);
+  x_ -= step * y_;
+  x_[position] = step;
+  basis_.exchange(position, entering_, y_);
+  entering_ = complement(leaving_variable);
+  ++pivots_;
+}
+
+bool Lemke::finish(const Problem& problem, const Deadline& deadline) {
+  offer_current();
+  active_.assign(scaled_.size(), 0);
+  for (int p = 0; p < scaled_.size(); ++p) {
+    const int variable = basis_.at(p);
+    if (variable >= scaled_.size() && variable != basis_.cover_variable()) {
+      active_[variable - scaled_.size()] = 1;
+    }
+  }
+  const ActiveSetPolish::Settings settings{.tolerance = settings_.tolerance,
+                                           .rounds = settings_.polish_rounds};
+  return polish_.run(problem, scaled_, settings, deadline, active_, best_);
+}
+
+void Lemke::offer_current() {
+  const int n = scaled_.size();
+  z_.setZero(n);
+  for (int p = 0; p < n; ++p) {
+    const int j = basis_.at(p) - n;
+    if (j >= 0 && j < n) {
+      z_[j] = static_cast<double>(scaled_.unscale_z(j, std::max(x_[p], 0.0)));
+    }
+  }
+  best_.offer(z_);
+}
+
+void Lemke::collect_ray() {
+  const int n = scaled_.size();
+  ray_.setZero(n);
+  for (int p = 0; p < n; ++p) {
+    const int j = basis_.at(p) - n;
+    if (j >= 0 && j < n) {
+      ray_[j] = scaled_.unscale_direction(j, -y_[p]);
+    }
+  }
+  if (const int j = entering_ - n; j >= 0) {
+    ray_[j] = scaled_.unscale_direction(j, 1.0);
+  }
+}
+
+int Lemke::complement(int variable) const {
+  const int n = scaled_.size();
+  return variable < n ? variable + n : variable - n;
+}
+
+int Lemke::pivot_limit() const {
+  return settings_.max_iterations >= 0 ? settings_.max_iterations : 20000 + 50 * scaled_.size();
+}
+
+void Lemke::describe(Result& result) const {
+  std::string& text = result.detail;
+  const auto say = [&text](const std::string& what) { text += (text.empty() ? "" : "; ") + what; };
+  if (restarts_ > 0) {
+    say(std::to_string(restarts_) + " restarts with another cover vector");
+  }
+  if (early_stop_) {
+    say("stopped at z_0 <= cover_tolerance and solved at z_0 = 0");
+  }
+  const ActiveSetPolish::Counts& counts = polish_.counts();
+  if (counts.rounds > 0) {
+    say("polish changed the active set " + std::to_string(counts.rounds) + " times");
+  }
+  if (counts.long_double) {
+    say("active set solved by a long double LU");
+  }
+  if (counts.orthogonal) {
+    say("dependent active rows, least-norm solution");
+  }
+}
+
+}  // namespace signorini::lcp

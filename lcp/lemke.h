@@ -1,0 +1,126 @@
+#pragma once
+
+#include <signorini/lcp/active_set_polish.h>
+#include <signorini/lcp/basis_factor.h>
+#include <signorini/lcp/best_iterate.h>
+#include <signorini/lcp/scaled_lcp.h>
+#include <signorini/lcp/solver.h>
+
+#include <vector>
+
+namespace signorini::lcp {
+
+/// Settings of Lemke. All are dimensionless: the problem is scaled to numbers near 1 first.
+struct LemkeSettings : SolverSettings {
+  /// An entry of the entering column counts as positive if it exceeds this fraction of the column's
+  /// largest entry. In (0, 1e-2]. Larger: dependent rows are never pivoted on, but true small
+  /// pivots are missed and z or w may become negative by about this much.
+  double pivot_tolerance = 1e-11;
+  /// Rows tie if after the step their variables are within this fraction of zero. In (0, 1e-2].
+  /// Ties are broken lexicographically. Larger: more rows of B^-1 are computed.
+  double tie_tolerance = 1e-11;
+  /// Pivots between two factorisations, >= 1. Larger: fewer factorisations, longer eta files.
+  int refactorisation_period = 64;
+  /// Refinement steps (long double residual) of every solve with the basis, 0 .. 10.
+  int refinements_per_solve = 1;
+  /// The covering variable z_0 counts as zero at this fraction of its first value; below it the
+  /// redundant rows of a contact problem, whose w is proportional to z_0, would be exchanged
+  /// without end. In [0, 1e-3].
+  double cover_tolerance = 1e-11;
+  /// How often the pivoting may start again with another cover vector and a larger pivot tolerance
+  /// when an ending is not confirmed by the certificate or by the ray's verdict, >= 0.
+  int restarts = 3;
+  /// Rounds of the final active-set polish, >= 0. With 0 the result is plain Lemke's.
+  int polish_rounds = 20;
+
+  /// @throws std::invalid_argument that names the setting, its value and the bound.
+  void validate() const;
+};
+
+/// Lemke's complementary pivoting for the LCP w = M z + q, 0 <= z ⊥ w >= 0, general M.
+///
+/// Follows the path of w = M z + q + d z_0 from a large z_0 to z_0 = 0 (Cottle, Pang, Stone, The
+/// Linear Complementarity Problem, 2009, Algorithm 4.4.1), lexicographic ratio test (4.9). It finds
+/// a solution for every q if M is strictly copositive, P, or R_0 and copositive, and if the LCP is
+/// feasible for copositive-plus M (positive semidefinite: contact problems without friction); for
+/// the pyramid friction LCP see Anitescu and Potra 1997. Outside these classes it may end on a ray
+/// although a solution exists.
+///
+/// It departs from the book in this:
+/// - revised: a factorised basis with product-form updates (BasisFactor), every solve refined with
+///   residuals in long double; the whole tableau never exists;
+/// - the problem is scaled by powers of two (ScaledLcp);
+/// - the cover vector d is not (1, .., 1) but a fixed pseudo-random sequence in [1, 2) in the
+/// scaled
+///   problem, so that equal rows (equal contacts) do not tie;
+/// - it stops at z_0 <= cover_tolerance times the first z_0 and solves at z_0 = 0;
+/// - the answer is polished (ActiveSetPolish), and what the certificate refuses is started again
+///   with another d. Both are named in Result::detail.
+///
+/// Endings besides solved: a ray (Result::ray: the z-part of the secondary ray, recomputed from a
+/// fresh factorisation before it is believed; kInfeasible, kNoSolutionBelow or kRayUnproven),
+/// kIterationLimit, kTimeLimit, kNumericalBreakdown. In all of them z is the best vector seen.
+///
+/// Cost of a pivot with k active z: O(k^2 + entries of M + n period); memory n^2.
+class Lemke : public Solver {
+ public:
+  /// @throws std::invalid_argument for settings out of range.
+  explicit Lemke(const LemkeSettings& settings = {});
+
+  [[nodiscard]] std::string_view name() const override { return "lemke"; }
+  [[nodiscard]] std::string refuses(const Problem& problem) const override;
+
+ protected:
+  const SolverSettings& settings() const override { return settings_; }
+  Status iterate(const Problem& problem, const Vector* warm_start, const Deadline& deadline,
+                 Result& result) override;
+
+ private:
+  /// How one run of the pivoting ended. kRefused: numerical trouble, or the certificate refused.
+  enum class Ending { kSolved, kRefused, kRay, kLimit, kTime };
+
+  Status run(const Problem& problem, const Deadline& deadline, Result& result);
+  Ending pivot(int attempt, const Problem& problem, const Deadline& deadline);
+  Ending refuse();
+  void choose_cover(int attempt);
+  bool enter_cover();
+  bool refactor();
+  void solve_refined(int variable, Vector& x);
+  int choose_leaving();
+  int break_tie();
+  void exchange(int position);
+  bool finish(const Problem& problem, const Deadline& deadline);
+  void offer_current();
+  void collect_ray();
+  [[nodiscard]] int complement(int variable) const;
+  [[nodiscard]] int pivot_limit() const;
+  void describe(Result& result) const;
+
+  LemkeSettings settings_;
+  ScaledLcp scaled_;
+  BasisFactor basis_;
+  ActiveSetPolish polish_;
+  BestIterate best_;
+
+  // One run of the pivoting.
+  double pivot_tolerance_ = 0.0;
+  Vector cover_;
+  Vector x_;         // values of the basic variables
+  Vector y_;         // B^-1 times the entering column
+  Vector residual_;  // work
+  int entering_ = -1;
+  std::vector<int> tied_;
+  Matrix tied_rows_;
+  std::vector<char> active_;
+  Vector z_;
+  Vector ray_;
+
+  // Over all runs of one solve.
+  int pivots_ = 0;
+  int factorizations_ = 0;
+  int refinements_ = 0;
+  int restarts_ = 0;
+  bool early_stop_ = false;
+};
+
+}  // namespace signorini::lcp

@@ -1,0 +1,62 @@
+#include <signorini/lcp/lemke.h>
+#include <signorini/lcp/pgs.h>
+#include <signorini/lcp/solver.h>
+
+#include <array>
+#include <stdexcept>
+#include <string>
+
+#ifdef SIGNORINI_HAS_GMP
+#include <signorini/lcp/exact_lemke.h>
+#endif
+
+namespace signorini::lcp {
+namespace {
+
+struct Entry {
+  std::string_view name;
+  std::unique_ptr<Solver> (*make)(const SolverSettings&);
+};
+
+template <typename Made, typename Settings>
+std::unique_ptr<Solver> make(const SolverSettings& settings) {
+  Settings own;
+  static_cast<SolverSettings&>(own) = settings;
+  return std::make_unique<Made>(own);
+}
+
+constexpr std::array kEntries = {
+    Entry{"lemke", &make<Lemke, LemkeSettings>},
+    Entry{"pgs", &make<Pgs, PgsSettings>},
+#ifdef SIGNORINI_HAS_GMP
+    Entry{"exact", &make<ExactLemke, ExactLemkeSettings>},
+#endif
+};
+
+constexpr auto kNames = [] {
+  std::array<std::string_view, kEntries.size()> names;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    names[i] = kEntries[i].name;
+  }
+  return names;
+}();
+
+}  // namespace
+
+std::span<const std::string_view> solver_names() {
+  return kNames;
+}
+
+std::unique_ptr<Solver> make_solver(std::string_view name, const SolverSettings& settings) {
+  std::string known;
+  for (const Entry& entry : kEntries) {
+    if (entry.name == name) {
+      return entry.make(settings);
+    }
+    known += (known.empty() ? "" : ", ") + std::string(entry.name);
+  }
+  throw std::invalid_argument("make_solver: no solver is called \"" + std::string(name) +
+                              "\"; known: " + known);
+}
+
+}  // namespace signorini::lcp
