@@ -57,38 +57,4 @@ void BlockMass::reserve(int blocks, int dimension_each) {
   values_.reserve(static_cast<std::size_t>(blocks) * dimension_each * dimension_each);
 }
 
-template <typename Scalar>
-void BlockMass::apply_inverse(int block, const Scalar* x, Scalar* y) const {
-  const auto [offset, d, start, is_factor] = blocks_[block];
-  const double* v = values_.data() + start;
-  if (!is_factor) {
-    for (int i = 0; i < d; ++i) {
-      y[i] = 0;
-    }
-    for (int j = 0; j < d; ++j) {
-      for (int i = 0; i < d; ++i) {
-        y[i] += v[j * d + i] * x[j];
-      }
-    }
-    return;
-  }
-  for (int i = 0; i < d; ++i) {  // L y = x
-    Scalar sum = x[i];
-    for (int j = 0; j < i; ++j) {
-      sum -= v[j * d + i] * y[j];
-    }
-    y[i] = sum / v[i * d + i];
-  }
-  for (int i = d - 1; i >= 0; --i) {  // L^T y = y
-    Scalar sum = y[i];
-    for (int j = i + 1; j < d; ++j) {
-      sum -= v[i * d + j] * y[j];
-    }
-    y[i] = sum / v[i * d + i];
-  }
-}
-
-template void BlockMass::apply_inverse(int, const double*, double*) const;
-template void BlockMass::apply_inverse(int, const long double*, long double*) const;
-
 }  // namespace signorini::lcp

@@ -34,7 +34,8 @@ class BlockMass {
   [[nodiscard]] int degrees_of_freedom() const { return degrees_of_freedom_; }
 
   /// y = W_k x for one block; x and y hold dimension(block) numbers and must not overlap.
-  /// Scalar is double or long double.
+  /// Scalar is double, long double or any type with their arithmetic against double (Interval; a
+  /// rational, with which this is W_k exactly: the matrix given, or L^-T L^-1 of the factor kept).
   template <typename Scalar>
   void apply_inverse(int block, const Scalar* x, Scalar* y) const;
 
@@ -51,5 +52,36 @@ class BlockMass {
   std::vector<double> values_;
   int degrees_of_freedom_ = 0;
 };
+
+template <typename Scalar>
+void BlockMass::apply_inverse(int block, const Scalar* x, Scalar* y) const {
+  const auto [offset, d, start, is_factor] = blocks_[block];
+  const double* v = values_.data() + start;
+  if (!is_factor) {
+    for (int i = 0; i < d; ++i) {
+      y[i] = 0;
+    }
+    for (int j = 0; j < d; ++j) {
+      for (int i = 0; i < d; ++i) {
+        y[i] += v[j * d + i] * x[j];
+      }
+    }
+    return;
+  }
+  for (int i = 0; i < d; ++i) {  // L y = x
+    Scalar sum = x[i];
+    for (int j = 0; j < i; ++j) {
+      sum -= v[j * d + i] * y[j];
+    }
+    y[i] = sum / v[i * d + i];
+  }
+  for (int i = d - 1; i >= 0; --i) {  // L^T y = y
+    Scalar sum = y[i];
+    for (int j = i + 1; j < d; ++j) {
+      sum -= v[i * d + j] * y[j];
+    }
+    y[i] = sum / v[i * d + i];
+  }
+}
 
 }  // namespace signorini::lcp

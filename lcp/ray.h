@@ -16,15 +16,24 @@ struct RayVerdict {
   double bound = 0.0;                    ///< Z, rounded down; +infinity when infeasible; 0 unproven
 };
 
-/// Judges a ray from the caller's data.
+/// Judges a ray from the caller's data, over the doubles given, with no rounding in the verdict:
 ///
-/// kInfeasible is returned only if q.y < 0 and M^T y <= 0 hold exactly: in rational arithmetic over
-/// the doubles given (with GMP; without GMP only where every product and sum is exact in long
-/// double, which is checked). kNoSolutionBelow is returned with a Z that is a true bound, rounding
-/// errors of its own evaluation included. Everything else is kRayUnproven.
+/// kInfeasible is returned only if q.y < 0 and M^T y <= 0 hold exactly. kNoSolutionBelow is
+/// returned with a Z > 0 that is a true bound, at most a few units in the last place below the
+/// exact one. Everything else is kRayUnproven.
 ///
-/// @param problem an LCP (is_lcp()), shapes checked. @param y n numbers; anything negative or not
-/// finite is unproven.
+/// Sums run in an exact fixed-point number (exact_sum.h); no build option changes the verdict. For
+/// the factored form M^T y = J W p + c y, p = J^T y is exact, and W p runs in intervals, so that a
+/// ray with p = 0, c y = 0 is judged exactly (and where W is positive definite no other y >= 0 can
+/// have A y <= 0, for then y.A y = p.W p + y.c y > 0); the W judged is the one that
+/// BlockMass::apply_inverse() applies.
+///
+/// Cost: about ten products with M^T.
+/// @param problem shapes checked (check_shapes()). Anything that is not an LCP (is_lcp()), or holds
+/// a value that is not finite, is unproven.
+/// @param y n numbers, the caller's units, any scale; anything negative or not finite is unproven.
+/// Source: the Farkas argument above; rays of Lemke's method in Cottle, Pang, Stone, The Linear
+/// Complementarity Problem (1992), theorem 4.4.9.
 [[nodiscard]] RayVerdict judge_ray(const Problem& problem, const VectorRef& y);
 
 }  // namespace signorini::lcp
