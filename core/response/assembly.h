@@ -9,19 +9,34 @@
 namespace signorini {
 
 /// The normal rows of a contact set: d'+ = A f + d'-, A = J M^-1 J^T with row i of J
-/// [N, r_A x N, -N, -(r_B x N)] over the dynamic bodies. Immovable and driven bodies have no block;
-/// their velocity is in d'-.
+/// [N, r_A x N, -N, -(r_B x N)] over the dynamic bodies (r_A = P_A - x_A, r_B = P_B - x_B).
+/// Immovable and driven bodies have no block; their velocity is in d'-.
 struct NormalRows {
-  lcp::FactoredMatrix A;           ///< 1/kg
+  lcp::FactoredMatrix A;           ///< 1/kg; one block of 6 a dynamic body that has a contact
   lcp::Vector d_dot;               ///< d'-, m/s
   std::vector<int> block_of_body;  ///< -1 for bodies without a row
 };
 
-/// @throws std::invalid_argument if a contact joins two bodies of which neither is dynamic.
+/// d' = N.(u_A - u_B) of one contact, with N as it is now; m/s, < 0 approaching.
+[[nodiscard]] double gap_velocity(const Bodies& bodies, const State& state, const Contact& contact);
+/// The same for every contact of a set.
+[[nodiscard]] lcp::Vector gap_velocities(const Bodies& bodies, const State& state,
+                                         const ContactSet& contacts);
+
+/// @throws std::invalid_argument naming the contact if neither of its bodies is dynamic.
+void check_dynamic(const Bodies& bodies, const ContactSet& contacts);
+
+/// Assembles the rows of all contacts. Cost: O(bodies + contacts).
+/// @param bodies, state, contacts valid: see validate() of each
+/// @throws std::invalid_argument if a contact joins two bodies of which neither is dynamic; rows is
+/// then untouched.
 void assemble_normals(const Bodies& bodies, const State& state, const ContactSet& contacts,
                       NormalRows& rows);
 
-/// p += J^T f for every dynamic body.
+/// d'+ = A f + d'-, in m/s, for f in N s (with d'' and N: the same).
+[[nodiscard]] lcp::Vector gap_velocities_after(const NormalRows& rows, const lcp::VectorRef& f);
+
+/// p += J^T f for every dynamic body. @param f N s, one a contact
 void apply_impulses(const Bodies& bodies, const ContactSet& contacts, const lcp::VectorRef& f,
                     State& state);
 

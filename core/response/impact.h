@@ -5,41 +5,56 @@
 #include <signorini/lcp/result.h>
 #include <signorini/lcp/solver.h>
 
+#include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace signorini {
 
 /// How the impulses of several touching contacts follow from d'+ = A f + d'-.
 enum class ImpactLaw : std::uint8_t {
-  /// Each colliding contact once, in order, by the closed form. Leaves contacts approaching.
+  /// Each contact once, in order: the closed form if it approaches when its turn comes. Leaves
+  /// contacts approaching.
   kSequentialOnce,
   /// The same, passes repeated until no contact approaches. Valid, but the order decides the
-  /// answer.
+  /// answer. sequential_impulses.h.
   kSequentialRepeated,
   /// Newton LCP: 0 <= f ⊥ A f + d'- + e_i d_i'- >= 0 (the e term for colliding contacts only). Can
-  /// be
-  /// infeasible (a ball between two opposite walls, e > 0) and can gain energy.
+  /// be infeasible (a ball between two opposite walls, e > 0) and can gain energy.
+  /// newton_impulse.h.
   kNewton,
   /// The notes' form: min |A f + d'- - t|^2, t_i = -e_i d_i'- if colliding, else d_i'-, subject to
   /// f >= 0, A f + d'- >= 0, and A f + d'- <= |d'-| at colliding contacts; its KKT conditions are
-  /// solved as an LCP in f and v+. Can gain energy.
+  /// solved as an LCP in f and d'+. Can be infeasible and can gain energy. notes_impulse.h.
   kNotes,
 };
+
+/// The text of a law, for example "sequential, repeated".
+[[nodiscard]] std::string_view to_string(ImpactLaw law);
 
 struct ImpactSettings {
   ImpactLaw law = ImpactLaw::kNewton;
   /// f = f_c + theta (f_e - f_c): f_e the law's impulses, f_c the plastic ones (e = 0), with the
   /// largest theta in [0, 1] in each connected set that gains no kinetic energy; theta = 0 where
-  /// f_e does not exist or is not admissible. Design, section 4.4. Not for the sequential laws.
+  /// f_e does not exist or is not admissible. energy_safe.h. Not for the sequential laws, which
+  /// never gain energy.
   bool energy_safe = true;
-  /// Contacts with d'- < -threshold are colliding (restitution acts), m/s, >= 0.
+  /// Contacts with d'- < -threshold are colliding (restitution acts; others that approach just
+  /// stop), m/s, finite, >= 0.
   double colliding_threshold = 0.0;
-  /// The LCP solver, a name that lcp::make_solver() knows, and what it is told.
+  /// kNotes only: A f + d'- <= |d'-| at every contact, as the notes have it, not at the colliding
+  /// ones alone. Then a rod on two supports that is hit beyond one of them has no solution: the
+  /// far support must lift, and it had d'- = 0.
+  bool bound_every_contact = false;
+  /// The LCP solver, a name that lcp::make_solver() knows, and what it is told. The sequential laws
+  /// use lcp.tolerance alone: no contact may approach faster than tolerance |d'-|_inf in the end.
   std::string solver = "lemke";
   lcp::SolverSettings lcp = {.tolerance = 1e-12};
-  /// Sequential laws: the order of the contacts (indices; empty: as given), and the most passes.
+  /// Sequential laws: the order of the contacts, a permutation of 0 .. n-1; empty: as given.
   std::vector<int> order;
+  /// Sequential laws, repeated: the most passes, >= 1. Between two opposite walls with e = 1 the
+  /// passes never end; with e < 1 they need about log(tolerance) / log(e).
   int max_passes = 10000;
 
   /// @throws std::invalid_argument naming field, value and bound.
@@ -47,12 +62,13 @@ struct ImpactSettings {
 };
 
 /// What an impact did. Kinetic energies are of the dynamic bodies, J. With driven bodies the
-/// balance that must not rise is energy_after - energy_before - driver_work.
+/// balance that must not rise is energy_after - energy_before - driver_work = energy_gain().
 struct ImpactReport {
   /// Solved (or to rounding) only if f satisfies the law: its LCPs are certified, or the sequential
   /// passes ended with no contact approaching (kSequentialOnce: always kSolved after its one pass).
   /// If the law's LCP failed and energy_safe let f = f_c stand in, this is the plastic LCP's
-  /// status, and law_status says what happened to the law.
+  /// status, and law_status says what happened to the law. Of several connected sets: the first
+  /// that is not solved, else solved to rounding if one is.
   lcp::Status status = lcp::Status::kNotRun;
   lcp::Status law_status = lcp::Status::kNotRun;
   lcp::Vector impulses;      ///< f, N s, one a contact
@@ -60,19 +76,42 @@ struct ImpactReport {
   lcp::Vector d_dot_after;   ///< d'+, m/s, from the new state
   double energy_before = 0.0;
   double energy_after = 0.0;
-  double driver_work = 0.0;         ///< work done by driven bodies through the impulses, J
+  double driver_work = 0.0;  ///< work done by driven bodies through the impulses, J
+  /// 1/2 f.(d'+ + d'-), J: what energy_gain() must be. The two are computed apart (this from the
+  /// impulses, that from the momenta), so that their difference shows a wrong sum.
+  double gain_from_impulses = 0.0;
   std::vector<int> set_of_contact;  ///< connected sets
-  lcp::Vector theta;                ///< one a connected set; 1 for every set when not energy_safe
-  lcp::Result law_result;      ///< the law's LCP (not for the sequential laws); ray_bound has Z
-  lcp::Result plastic_result;  ///< the plastic LCP (energy_safe only)
-  int passes = 0;              ///< sequential laws
-  std::string detail;          ///< one line: what was done beyond the plain law
+  lcp::Vector
+      theta;  ///< one a connected set; 1 for every set when not energy_safe; NaN: not solved
+  std::vector<lcp::Status> law_status_of_set;  ///< (not for the sequential laws)
+  /// The law's LCP, of the connected set where it ended worst (not solved before solved, then by
+  /// the unit-free residual). ray_bound has Z. A set of a single contact is answered in closed form
+  /// and certified as the Newton LCP it solves. Not for the sequential laws.
+  lcp::Result law_result;
+  /// The plastic LCP, of the set where it ended worst. Solved only where theta < 1 (energy_safe):
+  /// kNotRun where f_e itself gains no energy in every set.
+  lcp::Result plastic_result;
+  int passes = 0;      ///< sequential laws: passes that changed something
+  std::string detail;  ///< one line: what was done beyond the plain law
+
+  /// T+ - T- - driver work, J, from the momenta.
+  [[nodiscard]] double energy_gain() const { return energy_after - energy_before - driver_work; }
+  /// energy_gain() / (T- + |driver work|), dimensionless; 0 where both are 0. The driver's work is
+  /// in the scale because bodies at rest that are struck by a driven one have T- = 0.
+  [[nodiscard]] double relative_energy_gain() const;
 };
 
 /// Resolves the impact of a contact set: all contacts at once (or in sequence, by law), new momenta
-/// into state. Where status is not solved, state is unchanged and report.impulses is the best
-/// iterate.
-/// @throws std::invalid_argument for bad settings, bodies or contacts; state is then unchanged.
+/// into state. Each connected set of contacts is a problem of its own; a set of one contact is
+/// answered in closed form. Where status is not solved, state is unchanged and report.impulses is
+/// the best iterate.
+///
+/// energy_safe promises for every connected set: f >= 0, d'+ >= 0 (both to lcp.tolerance) and
+/// energy_gain() <= 1e-12 (T- + |driver work|), recomputed from the new momenta. Where that fails
+/// even for the plastic impulses the status is kNumericalBreakdown.
+///
+/// @throws std::invalid_argument for bad settings, bodies, states or contacts; state and report are
+/// then unchanged.
 void resolve_impact(const Bodies& bodies, const ContactSet& contacts,
                     const ImpactSettings& settings, State& state, ImpactReport& report);
 

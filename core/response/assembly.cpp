@@ -1,0 +1,133 @@
+#include <signorini/core/response/assembly.h>
+#include <signorini/core/response/single_impulse.h>
+
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+namespace signorini {
+namespace {
+
+using Vec6 = Eigen::Matrix<double, 6, 1>;
+using Mat6 = Eigen::Matrix<double, 6, 6>;
+
+/// -1 for bodies without a row, 0 for the others.
+std::vector<int> bodies_with_rows(const Bodies& bodies, const ContactSet& contacts) {
+  std::vector<int> has_row(bodies.size(), -1);
+  for (const Contact& contact : contacts) {
+    for (const int body : {contact.body_a, contact.body_b}) {
+      if (bodies[body].is_dynamic()) {
+        has_row[body] = 0;
+      }
+    }
+  }
+  return has_row;
+}
+
+/// blockdiag(I / m, J^-1).
+Mat6 inverse_mass_block(const Body& body, const BodyState& state) {
+  Mat6 block = Mat6::Zero();
+  block.topLeftCorner<3, 3>().diagonal().setConstant(inverse_mass(body));
+  block.bottomRightCorner<3, 3>() = inverse_inertia_world(body, state);
+  return block;
+}
+
+int find_root(std::vector<int>& parent, int i) {
+  while (parent[i] != i) {
+    parent[i] = parent[parent[i]];
+    i = parent[i];
+  }
+  return i;
+}
+
+}  // namespace
+
+double gap_velocity(const Bodies& bodies, const State& state, const Contact& contact) {
+  const int a = contact.body_a;
+  const int b = contact.body_b;
+  const Vec3 u_a = velocity(bodies[a], state[a]).at(contact.point_a - state[a].x);
+  const Vec3 u_b = velocity(bodies[b], state[b]).at(contact.point_b - state[b].x);
+  return contact.normal.dot(u_a - u_b);
+}
+
+lcp::Vector gap_velocities(const Bodies& bodies, const State& state, const ContactSet& contacts) {
+  lcp::Vector d_dot(contacts.size());
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    d_dot[i] = gap_velocity(bodies, state, contacts[i]);
+  }
+  return d_dot;
+}
+
+void check_dynamic(const Bodies& bodies, const ContactSet& contacts) {
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const Contact& contact = contacts[i];
+    if (!bodies[contact.body_a].is_dynamic() && !bodies[contact.body_b].is_dynamic()) {
+      throw std::invalid_argument(
+          "contact " + std::to_string(i) + ": body_a " + std::to_string(contact.body_a) +
+          " and body_b " + std::to_string(contact.body_b) + ": at least one must be dynamic");
+    }
+  }
+}
+
+void assemble_normals(const Bodies& bodies, const State& state, const ContactSet& contacts,
+                      NormalRows& rows) {
+  check_dynamic(bodies, contacts);
+  rows.A.clear();
+  rows.block_of_body = bodies_with_rows(bodies, contacts);
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    if (rows.block_of_body[k] == 0) {
+      rows.block_of_body[k] = rows.A.mass.add_inverse(inverse_mass_block(bodies[k], state[k]));
+    }
+  }
+  const auto add_body = [&](int body, const Vec3& direction, const Vec3& point) {
+    if (rows.block_of_body[body] >= 0) {
+      Vec6 values;
+      values << direction, (point - state[body].x).cross(direction);
+      rows.A.add_entry(rows.block_of_body[body], values);
+    }
+  };
+  for (const Contact& contact : contacts) {
+    rows.A.add_row();
+    add_body(contact.body_a, contact.normal, contact.point_a);
+    add_body(contact.body_b, -contact.normal, contact.point_b);
+  }
+  rows.d_dot = gap_velocities(bodies, state, contacts);
+}
+
+lcp::Vector gap_velocities_after(const NormalRows& rows, const lcp::VectorRef& f) {
+  lcp::Vector d_dot(rows.d_dot.size());
+  rows.A.multiply(f.data(), d_dot.data());
+  return d_dot + rows.d_dot;
+}
+
+void apply_impulses(const Bodies& bodies, const ContactSet& contacts, const lcp::VectorRef& f,
+                    State& state) {
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    apply_impulse(bodies, contacts[i], f[i], state);
+  }
+}
+
+std::vector<int> connected_sets(const Bodies& bodies, const ContactSet& contacts) {
+  std::vector<int> parent(bodies.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  for (const Contact& contact : contacts) {
+    if (bodies[contact.body_a].is_dynamic() && bodies[contact.body_b].is_dynamic()) {
+      parent[find_root(parent, contact.body_a)] = find_root(parent, contact.body_b);
+    }
+  }
+  std::vector<int> number_of_root(bodies.size(), -1);
+  std::vector<int> set_of_contact;
+  set_of_contact.reserve(contacts.size());
+  int sets = 0;
+  for (const Contact& contact : contacts) {
+    const int body = bodies[contact.body_a].is_dynamic() ? contact.body_a : contact.body_b;
+    int& number = number_of_root[find_root(parent, body)];
+    if (number < 0) {
+      number = sets++;
+    }
+    set_of_contact.push_back(number);
+  }
+  return set_of_contact;
+}
+
+}  // namespace signorini

@@ -1,0 +1,61 @@
+#include <signorini/core/response/energy_safe.h>
+#include <signorini/core/response/newton_impulse.h>
+#include <signorini/lcp/certificate.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace signorini {
+namespace {
+
+constexpr double kFloors = 4.0;  // as lcp::judge() allows
+
+/// f.A f = |J^T f|^2 in M^-1.
+double squared_in_inverse_mass(const NormalRows& rows, const lcp::Vector& f) {
+  lcp::Vector momentum(rows.A.degrees_of_freedom());
+  lcp::Vector velocity(rows.A.degrees_of_freedom());
+  rows.A.transpose_times(f.data(), momentum.data());
+  rows.A.apply_inverse_mass(momentum.data(), velocity.data());
+  return momentum.dot(velocity);
+}
+
+}  // namespace
+
+bool is_admissible(const NormalRows& rows, const lcp::VectorRef& f, double tolerance) {
+  if (f.size() == 0) {
+    return true;
+  }
+  lcp::Vector after;
+  const lcp::Certificate certificate = lcp::certify(plastic_problem(rows), f, &after);
+  lcp::Vector diagonal;
+  rows.A.diagonal(diagonal);
+  const double slack =
+      std::max(tolerance, kFloors * certificate.rounding_floor) * rows.d_dot.cwiseAbs().maxCoeff();
+  return f.cwiseProduct(diagonal).minCoeff() >= -slack && after.minCoeff() >= -slack;
+}
+
+EnergyLine energy_line(const NormalRows& rows, const lcp::VectorRef& f_c,
+                       const lcp::VectorRef& f_e) {
+  const lcp::Vector plastic_after = gap_velocities_after(rows, f_c);
+  const lcp::Vector direction = f_e - f_c;
+  EnergyLine line;
+  line.plastic = f_c.dot(plastic_after) - 0.5 * squared_in_inverse_mass(rows, f_c);
+  line.slope = direction.dot(plastic_after);
+  line.curvature = squared_in_inverse_mass(rows, direction);
+  return line;
+}
+
+double largest_theta(const EnergyLine& line) {
+  const double c = -line.plastic;
+  const double slope = std::max(line.slope, 0.0);  // negative by rounding alone
+  if (slope + 0.5 * line.curvature <= c) {
+    return 1.0;  // E(1) <= 0
+  }
+  if (c <= 0.0) {
+    return 0.0;
+  }
+  const double root = 2.0 * c / (slope + std::sqrt(slope * slope + 2.0 * line.curvature * c));
+  return std::min(root, 1.0);
+}
+
+}  // namespace signorini

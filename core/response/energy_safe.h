@@ -1,0 +1,33 @@
+#pragma once
+
+#include <signorini/core/response/assembly.h>
+
+namespace signorini {
+
+/// True if f >= 0 and A f + d'- >= 0, each to tolerance |d'-|_inf (A_ii f_i for f, so that both are
+/// in m/s) or to four times the rounding floor of lcp::Certificate where that is larger.
+[[nodiscard]] bool is_admissible(const NormalRows& rows, const lcp::VectorRef& f, double tolerance);
+
+/// The energy gain along f(theta) = f_c + theta (f_e - f_c) (design, section 4.4):
+///
+///     E(theta) = plastic + slope theta + 1/2 curvature theta^2,
+///     plastic   = -1/2 f_c.A f_c + f_c.d'_c   <= 0,    d'_c = A f_c + d'-  (f_c.d'_c = 0 but for
+///     slope     = (f_e - f_c).d'_c            >= 0,     rounding)
+///     curvature = (f_e - f_c).A (f_e - f_c)   >= 0,
+///
+/// each a sum without cancellation: the A products are |J^T f|^2 in M^-1. J.
+struct EnergyLine {
+  double plastic = 0.0;
+  double slope = 0.0;
+  double curvature = 0.0;
+};
+/// @param f_c solution of the plastic LCP. @param f_e admissible
+[[nodiscard]] EnergyLine energy_line(const NormalRows& rows, const lcp::VectorRef& f_c,
+                                     const lcp::VectorRef& f_e);
+
+/// The largest theta in [0, 1] with E(theta) <= 0: min(1, the positive root), the root as
+/// 2c / (slope + sqrt(slope^2 + 2 curvature c)) with c = -plastic, in which nothing cancels. 0 if
+/// there is none (c <= 0 by rounding, and E(1) > 0).
+[[nodiscard]] double largest_theta(const EnergyLine& line);
+
+}  // namespace signorini
