@@ -1,0 +1,95 @@
+#include <signorini/lcp/io/result_text.h>
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace signorini::lcp {
+namespace {
+
+std::string matrix_text(const MatrixForm& M) {
+  if (const auto* factored = std::get_if<FactoredMatrix>(&M)) {
+    return fmt::format("factored, {} blocks, {} degrees of freedom", factored->mass.block_count(),
+                       factored->degrees_of_freedom());
+  }
+  if (const auto* sparse = std::get_if<SparseMatrix>(&M)) {
+    return fmt::format("sparse, {} entries", sparse->nonZeros());
+  }
+  return "dense";
+}
+
+std::string cost_text(const Statistics& statistics) {
+  std::string text;
+  const auto add = [&text](int count, const char* what) {
+    if (count >= 0) {
+      text += fmt::format("{} {}, ", count, what);
+    }
+  };
+  add(statistics.pivots, "pivots");
+  add(statistics.iterations, "iterations");
+  add(statistics.factorizations, "factorizations");
+  add(statistics.refinements, "refinements");
+  return text + fmt::format("{:.3g} s", statistics.solve_seconds);
+}
+
+std::string ray_text(const Result& result) {
+  switch (result.status) {
+    case Status::kInfeasible: return "proves that no z satisfies the bounds: Z = inf";
+    case Status::kNoSolutionBelow:
+      return fmt::format("every feasible z has |z|_1 >= Z = {:.6g}", result.ray_bound);
+    default: return "proves nothing about this matrix";
+  }
+}
+
+/// The counter of the solver's own unit.
+int work_of(const Statistics& statistics) {
+  return std::max(statistics.pivots, statistics.iterations);
+}
+
+}  // namespace
+
+std::string problem_text(const Problem& problem) {
+  std::string text = fmt::format("n = {}, {}", problem.size(), matrix_text(problem.M));
+  if (problem.lower.size() > 0) {
+    text += fmt::format(", {} free rows", (problem.lower.array() < 0.0).count());
+  }
+  return text;
+}
+
+std::string result_text(const Result& result, double tolerance) {
+  const Certificate& c = result.certificate;
+  std::string text =
+      fmt::format("solver      {}\nstatus      {}\n", result.solver, to_string(result.status));
+  if (!result.detail.empty()) {
+    text += fmt::format("detail      {}\n", result.detail);
+  }
+  text += fmt::format("residual    natural {:.2e} (rounding floor {:.1e}), tolerance {:.1e}\n",
+                      c.natural_residual, c.natural_floor, tolerance);
+  text += fmt::format("            unit-free {:.2e} (rounding floor {:.1e}), worst row {}\n",
+                      c.unit_free_residual, c.rounding_floor, c.worst_row);
+  text += fmt::format("            backward error {:.2e}\n", c.backward_error);
+  text += fmt::format("z, w        min z {:.2e}, min w {:.2e}, |z.w| {:.2e}\n", c.min_z, c.min_w,
+                      c.complementarity);
+  if (result.ray.size() > 0) {
+    text += fmt::format("ray         {}\n", ray_text(result));
+  }
+  return text + fmt::format("cost        {}\n", cost_text(result.statistics));
+}
+
+std::string results_table(std::span<const Result> results) {
+  std::string text = fmt::format("{:<22}{:<22}{:>10}{:>11}{:>14}{:>11}\n", "solver", "status",
+                                 "natural", "unit-free", "pivots/iter.", "seconds");
+  for (const Result& result : results) {
+    text += fmt::format("{:<22}{:<22}{:>10.1e}{:>11.1e}{:>14}{:>11.3g}\n", result.solver,
+                        to_string(result.status), result.certificate.natural_residual,
+                        result.certificate.unit_free_residual, work_of(result.statistics),
+                        result.statistics.solve_seconds);
+  }
+  for (const Result& result : results) {
+    if (!result.detail.empty()) {
+      text += fmt::format("{}: {}\n", result.solver, result.detail);
+    }
+  }
+  return text;
+}
+
+}  // namespace signorini::lcp

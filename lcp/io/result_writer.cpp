@@ -1,0 +1,93 @@
+#include <signorini/lcp/io/matrix_market.h>
+#include <signorini/lcp/io/result_writer.h>
+#include <signorini/lcp/io/whole_file.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+namespace signorini::lcp {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) {
+  if (std::isnan(value)) {
+    return nullptr;
+  }
+  if (std::isinf(value)) {
+    return value > 0.0 ? "inf" : "-inf";
+  }
+  return value;
+}
+
+Json counter(int value) {
+  return value < 0 ? Json(nullptr) : Json(value);
+}
+
+Json certificate_object(const Certificate& certificate) {
+  return {{"natural_residual", number(certificate.natural_residual)},
+          {"unit_free_residual", number(certificate.unit_free_residual)},
+          {"natural_floor", number(certificate.natural_floor)},
+          {"rounding_floor", number(certificate.rounding_floor)},
+          {"backward_error", number(certificate.backward_error)},
+          {"min_z", number(certificate.min_z)},
+          {"min_w", number(certificate.min_w)},
+          {"complementarity", number(certificate.complementarity)},
+          {"worst_row", counter(certificate.worst_row)}};
+}
+
+Json result_object(const Result& result) {
+  return {{"status", to_string(result.status)},
+          {"solved", is_solved(result.status)},
+          {"solver", result.solver},
+          {"detail", result.detail},
+          {"iterations", counter(result.statistics.iterations)},
+          {"pivots", counter(result.statistics.pivots)},
+          {"factorizations", counter(result.statistics.factorizations)},
+          {"refinements", counter(result.statistics.refinements)},
+          {"solve_seconds", number(result.statistics.solve_seconds)},
+          {"certificate", certificate_object(result.certificate)},
+          {"ray_bound", number(result.ray_bound)}};
+}
+
+Json array_of(std::span<const Result> results) {
+  Json array = Json::array();
+  for (const Result& result : results) {
+    array.push_back(result_object(result));
+  }
+  return array;
+}
+
+std::string text_of(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+void write_vector(const std::filesystem::path& file, const Vector& vector) {
+  std::string text;
+  for (const double value : vector) {
+    append_number(value, text);
+    text += '\n';
+  }
+  write_whole_file(file, text);
+}
+
+std::string result_json(const Result& result, std::span<const Result> tried, int indent) {
+  Json json = result_object(result);
+  if (!tried.empty()) {
+    json["tried"] = array_of(tried);
+  }
+  return text_of(json, indent);
+}
+
+std::string results_json(std::span<const Result> results, std::span<const std::string> left_out,
+                         int indent) {
+  Json json;
+  json["results"] = array_of(results);
+  json["left_out"] = std::vector<std::string>(left_out.begin(), left_out.end());
+  return text_of(json, indent);
+}
+
+}  // namespace signorini::lcp

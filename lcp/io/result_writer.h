@@ -1,0 +1,31 @@
+#pragma once
+
+#include <signorini/lcp/result.h>
+#include <signorini/lcp/types.h>
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+namespace signorini::lcp {
+
+/// Writes a vector, one number a line with 17 significant digits, whole or not at all.
+/// @throws std::runtime_error naming the file, see write_whole_file()
+void write_vector(const std::filesystem::path& file, const Vector& vector);
+
+/// A result as a JSON object (without z and w): status, solver, detail, iterations, pivots,
+/// factorizations, refinements, solve_seconds, certificate (its members by their names), ray_bound.
+/// Numbers with as many digits as read back to the same bits. null: there is no such number (NaN,
+/// or a counter that the solver does not have); infinity is the string "inf" or "-inf", since JSON
+/// has no number for it.
+/// @param tried what was run before, in order, as the array `tried`; left out if empty
+/// @param indent spaces a level, -1: all on one line
+[[nodiscard]] std::string result_json(const Result& result, std::span<const Result> tried = {},
+                                      int indent = 2);
+
+/// Several results as a JSON object with the arrays `results` and `left_out`.
+/// @param left_out one line for each solver that was not run: which and why
+[[nodiscard]] std::string results_json(std::span<const Result> results,
+                                       std::span<const std::string> left_out = {}, int indent = 2);
+
+}  // namespace signorini::lcp

@@ -1,0 +1,311 @@
+// signorini-solve: reads a problem folder, solves it, says how good the answer is.
+
+#include <signorini/lcp/io/problem_folder.h>
+#include <signorini/lcp/io/result_text.h>
+#include <signorini/lcp/io/result_writer.h>
+#include <signorini/lcp/solver.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <unistd.h>
+#include <vector>
+
+namespace signorini::lcp {
+namespace {
+
+enum ExitCode {
+  kSolved = 0,
+  kNotSolved = 2,
+  kBadUsage = 64,
+  kBadInput = 65,
+  kSoftware = 70,
+  kCannotWrite = 73,
+};
+
+/// What `auto` tries, in this order, until one solves; a solver that refuses is passed over.
+constexpr std::string_view kAutoChain[] = {"lemke", "pgs"};
+
+/// Above this size `all` leaves out the rational solver unless a time limit is set: numbers grow
+/// with every pivot, and a few hundred rows take hours.
+constexpr Index kExactRowsInAll = 60;
+
+constexpr const char* kFooter =
+    "PROBLEM is a folder with problem.txt and either W.mtx and q.mtx, or M.mtx, H.mtx, f.mtx and\n"
+    "w.mtx (then A = H' M^-1 H is never formed unless the solver needs it).\n"
+    "--solver auto tries lemke, then pgs (bounds, free rows), until one solves; all runs every\n"
+    "solver and prints a table.\n"
+    "--output gets z, one number a line, written whole or not at all: of an unsolved problem the\n"
+    "best iterate, and the program says so.\n"
+    "Exit code: 0 solved or solved to rounding, 2 not solved (the status is printed), 64 bad "
+    "usage,\n"
+    "65 bad input (file, line and what was expected), 73 the output cannot be written.";
+
+struct Options {
+  std::string problem;
+  std::string solver = "auto";
+  SolverSettings settings;
+  std::string output;
+  bool json = false;
+};
+
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class OutputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// One line on standard error while something takes long, if a person is looking.
+void show_progress(const std::string& text) {
+  if (::isatty(STDERR_FILENO) != 0) {
+    fmt::print(stderr, "{}\n", text);
+  }
+}
+
+void check_solver_name(const std::string& name) {
+  const auto known = solver_names();
+  if (name != "auto" && name != "all" && std::ranges::find(known, name) == known.end()) {
+    throw UsageError(fmt::format("--solver: no solver is called '{}'; known: auto, {}, all", name,
+                                 fmt::join(known, ", ")));
+  }
+}
+
+void check_output(const std::string& output) {
+  if (output.empty()) {
+    return;
+  }
+  const std::filesystem::path path(output);
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  std::error_code error;
+  if (!std::filesystem::is_directory(folder, error)) {
+    throw UsageError(fmt::format("--output: {} is not a folder", folder.string()));
+  }
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error)) {
+    throw UsageError(fmt::format("--output: {} exists and is not a regular file", output));
+  }
+}
+
+Result solve_with(std::string_view name, const Problem& problem, SolverSettings settings,
+                  const Vector* warm_start = nullptr) {
+  show_progress(fmt::format("{}: solving, n = {} ...", name, problem.size()));
+  Result result;
+  make_solver(name, settings)->solve(problem, result, warm_start);
+  return result;
+}
+
+bool refuses(std::string_view name, const Problem& problem) {
+  return !make_solver(name)->refuses(problem).empty();
+}
+
+/// Endings that another solver cannot improve on.
+bool is_final(Status status) {
+  return is_solved(status) || status == Status::kInfeasible || status == Status::kInvalidInput;
+}
+
+/// The answer; else what a ray proves; else the iterate with the smallest unit-free residual. The
+/// first of equals.
+std::size_t best_of(const std::vector<Result>& results) {
+  const auto rank = [](const Result& result) {
+    const double residual = result.certificate.unit_free_residual;
+    return std::pair(is_final(result.status)                     ? 0
+                     : result.status == Status::kNoSolutionBelow ? 1
+                                                                 : 2,
+                     residual >= 0.0 ? residual : std::numeric_limits<double>::infinity());
+  };
+  const auto best = std::ranges::min_element(results, {}, rank);
+  return static_cast<std::size_t>(best - results.begin());
+}
+
+/// Runs the chain; each unsolved end is the next one's warm start.
+std::vector<Result> solve_auto(const Problem& problem, const SolverSettings& settings) {
+  const Deadline deadline(settings.time_limit);
+  std::vector<Result> tried;
+  for (const std::string_view name : kAutoChain) {
+    const double left = settings.time_limit - deadline.elapsed_seconds();
+    if (refuses(name, problem) || (left <= 0.0 && !tried.empty())) {
+      continue;
+    }
+    SolverSettings own = settings;
+    own.time_limit = left > 0.0 ? left : settings.time_limit;
+    const Vector* start = tried.empty() ? nullptr : &tried.back().z;
+    tried.push_back(solve_with(name, problem, own, start));
+    if (is_final(tried.back().status)) {
+      break;
+    }
+  }
+  return tried;
+}
+
+struct AllResults {
+  std::vector<Result> results;
+  std::vector<std::string> left_out;  // solver and why
+};
+
+AllResults solve_all(const Problem& problem, const SolverSettings& settings) {
+  AllResults all;
+  for (const std::string_view name : solver_names()) {
+    std::string why = make_solver(name)->refuses(problem);
+    if (name == "exact" && problem.size() > kExactRowsInAll &&
+        !std::isfinite(settings.time_limit)) {
+      why = fmt::format("n = {} > {} (set --time-limit, or ask for it alone)", problem.size(),
+                        kExactRowsInAll);
+    }
+    if (why.empty()) {
+      all.results.push_back(solve_with(name, problem, settings));
+    } else {
+      all.left_out.push_back(fmt::format("{}: left out: {}", name, why));
+    }
+  }
+  return all;
+}
+
+void write_output(const Options& options, const Result& result) {
+  if (options.output.empty()) {
+    return;
+  }
+  if (!result.z.allFinite()) {
+    fmt::print(stderr, "{}: not written: there is no z ({})\n", options.output,
+               to_string(result.status));
+    return;
+  }
+  try {
+    write_vector(options.output, result.z);
+  } catch (const std::runtime_error& error) {
+    throw OutputError(error.what());
+  }
+  if (!options.json || !is_solved(result.status)) {
+    fmt::print(stderr, "{}: written ({})\n", options.output,
+               is_solved(result.status) ? "the solution" : "the best iterate, NOT a solution");
+  }
+}
+
+int exit_code(const Result& result) {
+  if (is_solved(result.status)) {
+    return kSolved;
+  }
+  return result.status == Status::kInvalidInput ? kBadInput : kNotSolved;
+}
+
+int run_all(const Options& options, const Problem& problem) {
+  const AllResults all = solve_all(problem, options.settings);
+  if (options.json) {
+    fmt::print("{}", results_json(all.results, all.left_out));
+  } else {
+    fmt::print("{}", results_table(all.results));
+    for (const std::string& line : all.left_out) {
+      fmt::print("{}\n", line);
+    }
+  }
+  if (all.results.empty()) {
+    return kNotSolved;
+  }
+  const Result& best = all.results[best_of(all.results)];
+  write_output(options, best);
+  return exit_code(best);
+}
+
+int run_one(const Options& options, const Problem& problem) {
+  std::vector<Result> tried;
+  if (options.solver == "auto") {
+    tried = solve_auto(problem, options.settings);
+  } else {
+    if (const std::string why = make_solver(options.solver)->refuses(problem); !why.empty()) {
+      throw UsageError(fmt::format("--solver {}: {}", options.solver, why));
+    }
+    tried.push_back(solve_with(options.solver, problem, options.settings));
+  }
+  const Result& result = tried[best_of(tried)];
+  if (options.json) {
+    fmt::print("{}", result_json(result, tried));
+  } else {
+    if (options.solver == "auto") {
+      std::vector<std::string> names;
+      for (const Result& one : tried) {
+        names.push_back(fmt::format("{} ({})", one.solver, to_string(one.status)));
+      }
+      fmt::print("auto        {}\n", fmt::join(names, ", then "));
+    }
+    fmt::print("{}", result_text(result, options.settings.tolerance));
+  }
+  write_output(options, result);
+  return exit_code(result);
+}
+
+int run(const Options& options) {
+  check_solver_name(options.solver);
+  try {
+    options.settings.validate();
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
+  }
+  check_output(options.output);
+  show_progress(fmt::format("reading {} ...", options.problem));
+  const Problem problem = read_problem(options.problem);
+  if (!options.json) {
+    fmt::print("problem     {}: {}\n", options.problem, problem_text(problem));
+  }
+  const int code = options.solver == "all" ? run_all(options, problem) : run_one(options, problem);
+  if (std::fflush(stdout) != 0) {
+    throw OutputError("standard output: not written");
+  }
+  return code;
+}
+
+int complain(int code, const std::string& what) {
+  fmt::print(stderr, "signorini-solve: {}\n", what);
+  return code;
+}
+
+}  // namespace
+}  // namespace signorini::lcp
+
+int main(int argc, char** argv) {
+  using namespace signorini::lcp;
+  Options options;
+  CLI::App app(
+      "Solves a linear complementarity problem w = M z + q, 0 <= z, 0 <= w, z.w = 0 (also "
+      "with free rows) and certifies the answer.",
+      "signorini-solve");
+  app.footer(kFooter);
+  app.set_version_flag("--version", std::string("signorini-solve ") + SIGNORINI_VERSION);
+  app.add_option("PROBLEM", options.problem, "the problem folder")->required();
+  app.add_option("--solver", options.solver,
+                 fmt::format("auto, {} or all", fmt::join(solver_names(), ", ")))
+      ->capture_default_str();
+  app.add_option("--tolerance", options.settings.tolerance,
+                 "what both residuals must be at most, > 0")
+      ->capture_default_str();
+  app.add_option("--max-iterations", options.settings.max_iterations,
+                 "pivots, sweeps or iterations; -1: the solver's own default")
+      ->capture_default_str();
+  app.add_option("--time-limit", options.settings.time_limit, "seconds, > 0 (default: none)");
+  app.add_option("--output", options.output, "file for z");
+  app.add_flag("--json", options.json, "print the result as JSON");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kSolved : kBadUsage;
+  }
+  try {
+    return run(options);
+  } catch (const UsageError& error) {
+    return complain(kBadUsage, error.what());
+  } catch (const InputError& error) {
+    return complain(kBadInput, error.what());
+  } catch (const OutputError& error) {
+    return complain(kCannotWrite, error.what());
+  } catch (const std::exception& error) {
+    return complain(kSoftware, error.what());
+  }
+}
