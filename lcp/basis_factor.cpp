@@ -5,12 +5,15 @@
 
 namespace signorini::lcp {
 
-void BasisFactor::reset(const ScaledLcp& lcp, const Vector& cover) {
+void BasisFactor::reset(const ScaledLcp& lcp, const std::vector<char>& active,
+                        const Vector& cover) {
   lcp_ = &lcp;
   cover_ = &cover;
   n_ = lcp.size();
   at_.resize(n_);
-  std::iota(at_.begin(), at_.end(), 0);
+  for (int i = 0; i < n_; ++i) {
+    at_[i] = active[i] != 0 ? n_ + i : i;
+  }
   cover_position_ = -1;
   alpha_.clear();
   rows_.clear();
@@ -189,6 +192,19 @@ void BasisFactor::residual(Variable column_variable, const Vector& x, Vector& re
   }
   for (int i = 0; i < n_; ++i) {
     residual[i] = static_cast<double>(wide_[i]);
+  }
+}
+
+void BasisFactor::multiply(const Vector& x, Vector& a) const {
+  a.setZero(n_);
+  for (int p = 0; p < n_; ++p) {
+    if (at_[p] < n_) {
+      a[at_[p]] += x[p];
+    } else if (at_[p] < cover_variable()) {
+      lcp_->add_column(at_[p] - n_, -x[p], a.data());
+    } else {
+      a -= x[p] * *cover_;
+    }
   }
 }
 

@@ -24,8 +24,9 @@ class BasisFactor {
   /// A variable: w_i = i, z_i = n + i, z_0 = 2 n.
   using Variable = int;
 
-  /// The basis of all w.
-  void reset(const ScaledLcp& lcp, const Vector& cover);
+  /// The complementary basis of the active z_i and the other w_i, each at position i, not
+  /// factorised. Keeps references; the cover vector is read when it is used.
+  void reset(const ScaledLcp& lcp, const std::vector<char>& active, const Vector& cover);
 
   /// Factorises the current basis and drops the eta vectors; moves the variables to their own
   /// positions. Cost: 2/3 |S|^3. @return false if the compact matrix has a zero pivot or overflows.
@@ -38,6 +39,9 @@ class BasisFactor {
 
   /// residual = a - B x in long double, rounded. a: column of variable, or q if variable is -1.
   void residual(Variable column, const Vector& x, Vector& residual);
+
+  /// a = B x
+  void multiply(const Vector& x, Vector& a) const;
 
   /// The column of a variable in [I, -M, -d].
   void column(Variable variable, Vector& a) const;

@@ -15,8 +15,12 @@ namespace {
 
 constexpr int kQ = -1;  // BasisFactor::residual: q instead of a column
 constexpr int kNone = -1;
-constexpr double kSmallPivot = 1e-6;        // of the column: only taken from a fresh factorisation
+constexpr double kSmallPivot = 1e-10;       // of the column: only taken from a fresh factorisation
 constexpr double kRestartTolerance = 30.0;  // pivot tolerance grows by this a restart
+constexpr int kFirstOtherBasis = 2;         // the restart that takes another first basis
+constexpr int kBasisTrials = 20;            // random bases tried until one is regular
+constexpr double kGoodBasis = 1e-3;         // relative error of a solve with a usable first basis
+constexpr double kTightRay = 1e-10;         // M^T y <= 0 is met to this fraction of |M|^T y
 
 void require(bool good, const char* setting, const char* bound, double value) {
   if (!good) {
@@ -53,9 +57,9 @@ std::string Lemke::refuses(const Problem& problem) const {
                "free rows or coupled limits";
 }
 
-Status Lemke::iterate(const Problem& problem, const Vector* /*warm_start*/,
-                      const Deadline& deadline, Result& result) {
-  pivots_ = factorizations_ = refinements_ = restarts_ = 0;
+Status Lemke::iterate(const Problem& problem, const Vector* warm_start, const Deadline& deadline,
+                      Result& result) {
+  pivots_ = factorizations_ = refinements_ = restarts_ = other_bases_ = 0;
   early_stop_ = false;
   polish_.reset_counts();
   best_.reset(problem);
@@ -65,7 +69,7 @@ Status Lemke::iterate(const Problem& problem, const Vector* /*warm_start*/,
   } else if (!scaled_.assign(problem)) {
     result.detail = "M is not finite once it is formed and scaled";
   } else {
-    status = run(problem, deadline, result);
+    status = run(problem, warm_start, deadline, result);
     describe(result);
   }
   result.z = best_.z();
@@ -75,7 +79,18 @@ Status Lemke::iterate(const Problem& problem, const Vector* /*warm_start*/,
   return status;
 }
 
-Status Lemke::run(const Problem& problem, const Deadline& deadline, Result& result) {
+Status Lemke::run(const Problem& problem, const Vector* warm_start, const Deadline& deadline,
+                  Result& result) {
+  start_.assign(problem.size(), 0);
+  if (warm_start != nullptr) {
+    for (Index i = 0; i < problem.size(); ++i) {
+      start_[i] = (*warm_start)[i] > 0.0 ? 1 : 0;
+    }
+    best_.offer(warm_start->cwiseMax(0.0));
+    if (polish(start_, problem, deadline)) {
+      return Status::kSolved;
+    }
+  }
   RayVerdict verdict;
   for (restarts_ = 0;; ++restarts_) {
     switch (pivot(restarts_, problem, deadline)) {
@@ -90,19 +105,25 @@ Status Lemke::run(const Problem& problem, const Deadline& deadline, Result& resu
           verdict = found;
           result.ray = sharpened;
         }
+        if (verdict.status == Status::kInfeasible || ray_is_tight()) {
+          return Status::kRayUnproven;
+        }
         break;
       }
     }
-    if (verdict.status == Status::kInfeasible || restarts_ == settings_.restarts) {
+    if (restarts_ == settings_.restarts) {
       return result.ray.size() > 0 ? Status::kRayUnproven : Status::kNumericalBreakdown;
     }
   }
 }
 
 Lemke::Ending Lemke::pivot(int attempt, const Problem& problem, const Deadline& deadline) {
-  pivot_tolerance_ =
-      std::min(1e-2, settings_.pivot_tolerance * std::pow(kRestartTolerance, attempt));
-  choose_cover(attempt);
+  if (!start(attempt)) {
+    return Ending::kRefused;
+  }
+  if (x_.minCoeff() >= 0.0) {  // the first basis is complementary and feasible
+    return finish(problem, deadline) ? Ending::kSolved : Ending::kRefused;
+  }
   if (!enter_cover()) {
     return Ending::kRefused;
   }
@@ -159,28 +180,64 @@ Lemke::Ending Lemke::refuse() {
   return Ending::kRefused;
 }
 
-void Lemke::choose_cover(int attempt) {
-  std::minstd_rand generator(static_cast<unsigned>(attempt) + 1U);
-  const double range = static_cast<double>(std::minstd_rand::max());
-  cover_.resize(scaled_.size());
-  generator.discard(8);
-  for (double& value : cover_) {
-    value = 1.0 + static_cast<double>(generator()) / range;
+/// The first basis, its x, and the cover vector.
+bool Lemke::start(int attempt) {
+  generator_.seed(static_cast<unsigned>(attempt) + 1U);
+  generator_.discard(8);
+  pivot_tolerance_ =
+      std::min(1e-2, settings_.pivot_tolerance * std::pow(kRestartTolerance, attempt));
+  if (attempt == 0 && start_from(start_)) {
+    return true;
   }
+  std::fill(start_.begin(), start_.end(), 0);
+  if (attempt < kFirstOtherBasis) {
+    return start_from(start_);
+  }
+  for (int trial = 0; trial < kBasisTrials; ++trial) {
+    const double share = uniform();
+    for (char& is_active : start_) {
+      is_active = uniform() < share ? 1 : 0;
+    }
+    if (start_from(start_)) {
+      ++other_bases_;
+      return true;
+    }
+  }
+  return false;
+}
+
+bool Lemke::start_from(const std::vector<char>& active) {
+  basis_.reset(scaled_, active, cover_);
+  if (!refactor()) {
+    return false;
+  }
+  ratios_.resize(scaled_.size());
+  for (double& ratio : ratios_) {
+    ratio = 1.0 + uniform();
+  }
+  basis_.multiply(ratios_, cover_);
+  // A nearly singular basis gives itself away by not reproducing its own cover vector.
+  y_ = cover_;
+  basis_.solve(y_);
+  return (y_ - ratios_).cwiseAbs().maxCoeff() < kGoodBasis;
+}
+
+/// In [0, 1), the same on every machine.
+double Lemke::uniform() {
+  return static_cast<double>(generator_() - std::minstd_rand::min()) /
+         (static_cast<double>(std::minstd_rand::max() - std::minstd_rand::min()) + 1.0);
 }
 
 bool Lemke::enter_cover() {
-  const Vector& q = scaled_.q();
-  int row = 0;
-  for (int i = 1; i < scaled_.size(); ++i) {
-    // Of equal ratios the last: it is the lexicographic choice for the perturbation (e, e^2, ...).
-    if (q[i] / cover_[i] <= q[row] / cover_[row]) {
-      row = i;
+  int position = 0;
+  for (int p = 1; p < scaled_.size(); ++p) {
+    // Of equal ratios the last: the lexicographic choice for the perturbation (e, e^2, ...) of q.
+    if (x_[p] / ratios_[p] <= x_[position] / ratios_[position]) {
+      position = p;
     }
   }
-  basis_.reset(scaled_, cover_);
-  basis_.exchange(row, basis_.cover_variable(), Vector(-cover_));
-  entering_ = complement(row);
+  entering_ = complement(basis_.at(position));
+  basis_.exchange(position, basis_.cover_variable(), Vector(-ratios_));
   ++pivots_;
   return refactor();
 }
@@ -281,14 +338,18 @@ bool Lemke::finish(const Problem& problem, const Deadline& deadline) {
   offer_current();
   active_.assign(scaled_.size(), 0);
   for (int p = 0; p < scaled_.size(); ++p) {
-    const int variable = basis_.at(p);
-    if (variable >= scaled_.size() && variable != basis_.cover_variable()) {
-      active_[variable - scaled_.size()] = 1;
+    const int j = basis_.at(p) - scaled_.size();
+    if (j >= 0 && j < scaled_.size()) {
+      active_[j] = 1;
     }
   }
+  return polish(active_, problem, deadline);
+}
+
+bool Lemke::polish(std::vector<char> active, const Problem& problem, const Deadline& deadline) {
   const ActiveSetPolish::Settings settings{.tolerance = settings_.tolerance,
                                            .rounds = settings_.polish_rounds};
-  return polish_.run(problem, scaled_, settings, deadline, active_, best_);
+  return polish_.run(problem, scaled_, settings, deadline, active, best_);
 }
 
 void Lemke::offer_current() {
@@ -317,6 +378,26 @@ void Lemke::collect_ray() {
   }
 }
 
+/// True if the ray is one up to rounding: M^T y <= 0 and q.y < 0, measured in the scaled problem.
+/// No other start will find a better one then.
+bool Lemke::ray_is_tight() {
+  const int n = scaled_.size();
+  for (int i = 0; i < n; ++i) {
+    y_[i] = std::max(0.0, scaled_.scale_dual(i, ray_[i]));
+  }
+  const double size = y_.maxCoeff();
+  const double gain = -scaled_.q().dot(y_);
+  if (!std::isfinite(size) || !(gain > kTightRay * scaled_.q().cwiseAbs().dot(y_))) {
+    return false;
+  }
+  for (int j = 0; j < n; ++j) {
+    if (!(scaled_.dot_column(j, y_) <= kTightRay * scaled_.dot_absolute_column(j, y_))) {
+      return false;
+    }
+  }
+  return true;
+}
+
 int Lemke::complement(int variable) const {
   const int n = scaled_.size();
   return variable < n ? variable + n : variable - n;
@@ -330,7 +411,8 @@ void Lemke::describe(Result& result) const {
   std::string& text = result.detail;
   const auto say = [&text](const std::string& what) { text += (text.empty() ? "" : "; ") + what; };
   if (restarts_ > 0) {
-    say(std::to_string(restarts_) + " restarts with another cover vector");
+    say(std::to_string(restarts_) + " restarts with another cover vector" +
+        (other_bases_ > 0 ? ", " + std::to_string(other_bases_) + " from another basis" : ""));
   }
   if (early_stop_) {
     say("stopped at z_0 <= cover_tolerance and solved at z_0 = 0");

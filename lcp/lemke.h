@@ -6,6 +6,7 @@
 #include <signorini/lcp/scaled_lcp.h>
 #include <signorini/lcp/solver.h>
 
+#include <random>
 #include <vector>
 
 namespace signorini::lcp {
@@ -27,9 +28,10 @@ struct LemkeSettings : SolverSettings {
   /// redundant rows of a contact problem, whose w is proportional to z_0, would be exchanged
   /// without end. In [0, 1e-3].
   double cover_tolerance = 1e-11;
-  /// How often the pivoting may start again with another cover vector and a larger pivot tolerance
-  /// when an ending is not confirmed by the certificate or by the ray's verdict, >= 0.
-  int restarts = 3;
+  /// How often the pivoting may start again when an ending is not confirmed by the certificate or
+  /// by the ray's verdict, >= 0: with another cover vector and a larger pivot tolerance, from the
+  /// second time on also from another complementary basis.
+  int restarts = 6;
   /// Rounds of the final active-set polish, >= 0. With 0 the result is plain Lemke's.
   int polish_rounds = 20;
 
@@ -55,7 +57,12 @@ struct LemkeSettings : SolverSettings {
 ///   problem, so that equal rows (equal contacts) do not tie;
 /// - it stops at z_0 <= cover_tolerance times the first z_0 and solves at z_0 = 0;
 /// - the answer is polished (ActiveSetPolish), and what the certificate refuses is started again
-///   with another d. Both are named in Result::detail.
+///   with another d, later from another complementary basis B_0 with the cover column B_0 d (which
+///   is Lemke's method for the principal transform of the problem, and solves some that it does
+///   not, bimatrix games for example). Both are named in Result::detail.
+///
+/// A warm start gives the first basis: z_i > 0 active. If its active set solves the problem no
+/// pivot is made; if its basis is singular it is not used.
 ///
 /// Endings besides solved: a ray (Result::ray: the z-part of the secondary ray, recomputed from a
 /// fresh factorisation before it is believed; kInfeasible, kNoSolutionBelow or kRayUnproven),
@@ -79,10 +86,13 @@ class Lemke : public Solver {
   /// How one run of the pivoting ended. kRefused: numerical trouble, or the certificate refused.
   enum class Ending { kSolved, kRefused, kRay, kLimit, kTime };
 
-  Status run(const Problem& problem, const Deadline& deadline, Result& result);
+  Status run(const Problem& problem, const Vector* warm_start, const Deadline& deadline,
+             Result& result);
   Ending pivot(int attempt, const Problem& problem, const Deadline& deadline);
   Ending refuse();
-  void choose_cover(int attempt);
+  bool start(int attempt);
+  bool start_from(const std::vector<char>& active);
+  double uniform();
   bool enter_cover();
   bool refactor();
   void solve_refined(int variable, Vector& x);
@@ -90,8 +100,10 @@ class Lemke : public Solver {
   int break_tie();
   void exchange(int position);
   bool finish(const Problem& problem, const Deadline& deadline);
+  bool polish(std::vector<char> active, const Problem& problem, const Deadline& deadline);
   void offer_current();
   void collect_ray();
+  [[nodiscard]] bool ray_is_tight();
   [[nodiscard]] int complement(int variable) const;
   [[nodiscard]] int pivot_limit() const;
   void describe(Result& result) const;
@@ -104,6 +116,8 @@ class Lemke : public Solver {
 
   // One run of the pivoting.
   double pivot_tolerance_ = 0.0;
+  std::minstd_rand generator_;
+  Vector ratios_;  // the cover in terms of the first basis, in [1, 2)
   Vector cover_;
   Vector x_;         // values of the basic variables
   Vector y_;         // B^-1 times the entering column
@@ -111,7 +125,8 @@ class Lemke : public Solver {
   int entering_ = -1;
   std::vector<int> tied_;
   Matrix tied_rows_;
-  std::vector<char> active_;
+  std::vector<char> active_;  // of the polish
+  std::vector<char> start_;   // of the first basis
   Vector z_;
   Vector ray_;
 
@@ -120,6 +135,7 @@ class Lemke : public Solver {
   int factorizations_ = 0;
   int refinements_ = 0;
   int restarts_ = 0;
+  int other_bases_ = 0;
   bool early_stop_ = false;
 };
 

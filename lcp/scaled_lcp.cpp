@@ -139,6 +139,17 @@ double ScaledLcp::dot_column(int j, const Vector& u) const {
   return sum;
 }
 
+double ScaledLcp::dot_absolute_column(int j, const Vector& u) const {
+  if (!is_sparse_) {
+    return dense_.col(j).cwiseAbs().dot(u.cwiseAbs());
+  }
+  double sum = 0.0;
+  for (int k = start_[j]; k < start_[j + 1]; ++k) {
+    sum += std::abs(value_[k] * u[row_[k]]);
+  }
+  return sum;
+}
+
 void ScaledLcp::gather_column(int j, const std::vector<int>& place, double* target) const {
   if (is_sparse_) {
     for (int k = start_[j]; k < start_[j + 1]; ++k) {
@@ -165,6 +176,10 @@ long double ScaledLcp::scale_z(int i, long double z) const {
 
 long double ScaledLcp::scale_w(int i, long double w) const {
   return std::ldexp(w, row_exponent_[i] + q_exponent_);
+}
+
+double ScaledLcp::scale_dual(int i, double y) const {
+  return std::ldexp(y, -row_exponent_[i]);
 }
 
 double ScaledLcp::unscale_direction(int j, double y) const {

@@ -47,6 +47,8 @@ class ScaledLcp {
 
   /// M'_j . u
   [[nodiscard]] double dot_column(int j, const Vector& u) const;
+  /// |M'_j| . |u|
+  [[nodiscard]] double dot_absolute_column(int j, const Vector& u) const;
 
   /// target[place[i]] = M'_ij for every row i with place[i] >= 0; target is not cleared.
   void gather_column(int j, const std::vector<int>& place, double* target) const;
@@ -58,6 +60,8 @@ class ScaledLcp {
   [[nodiscard]] long double scale_w(int i, long double w) const;
   /// C_j y_j: a direction of z, without s.
   [[nodiscard]] double unscale_direction(int j, double y) const;
+  /// y_i / R_i: the dual y' for which M'^T y' = C M^T y.
+  [[nodiscard]] double scale_dual(int i, double y) const;
 
  private:
   void choose_exponents();
