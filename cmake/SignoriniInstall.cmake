@@ -25,8 +25,10 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/signorini-config.cmake
   ${PROJECT_BINARY_DIR}/signorini-config.cmake INSTALL_DESTINATION ${SIGNORINI_CMAKE_DIR})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/signorini-config-version.cmake
   COMPATIBILITY SameMinorVersion)
-file(COPY ${PROJECT_SOURCE_DIR}/cmake/FindGMP.cmake DESTINATION ${PROJECT_BINARY_DIR})
+file(COPY ${PROJECT_SOURCE_DIR}/cmake/FindGMP.cmake ${PROJECT_SOURCE_DIR}/cmake/FindCHOLMOD.cmake
+     DESTINATION ${PROJECT_BINARY_DIR})
 install(FILES ${PROJECT_BINARY_DIR}/signorini-config.cmake
               ${PROJECT_BINARY_DIR}/signorini-config-version.cmake
               ${PROJECT_SOURCE_DIR}/cmake/FindGMP.cmake
+              ${PROJECT_SOURCE_DIR}/cmake/FindCHOLMOD.cmake
         DESTINATION ${SIGNORINI_CMAKE_DIR})

@@ -1,0 +1,60 @@
+#include <signorini/lcp/sparse_cholesky.h>
+
+#include <Eigen/SparseCholesky>
+#include <array>
+#include <stdexcept>
+#include <string>
+
+namespace signorini::lcp {
+
+#ifdef SIGNORINI_HAS_CHOLMOD
+std::unique_ptr<SparseCholesky> make_cholmod();  // sparse_cholesky_cholmod.cpp
+#endif
+
+namespace {
+
+class EigenSimplicial final : public SparseCholesky {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "eigen"; }
+  void analyse(const SparseMatrix& lower) override { factor_.analyzePattern(lower); }
+  [[nodiscard]] bool factor(const SparseMatrix& lower) override {
+    factor_.factorize(lower);
+    return factor_.info() == Eigen::Success && (factor_.vectorD().array() > 0.0).all();
+  }
+  void solve(Vector& x) override { x = factor_.solve(x).eval(); }
+
+ private:
+  Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>> factor_;
+};
+
+constexpr std::array kNames = {
+#ifdef SIGNORINI_HAS_CHOLMOD
+    std::string_view("cholmod"),
+#endif
+    std::string_view("eigen")};
+
+}  // namespace
+
+std::span<const std::string_view> sparse_cholesky_names() {
+  return kNames;
+}
+
+std::unique_ptr<SparseCholesky> make_sparse_cholesky(std::string_view name) {
+  const std::string_view wanted = name.empty() ? kNames.front() : name;
+#ifdef SIGNORINI_HAS_CHOLMOD
+  if (wanted == "cholmod") {
+    return make_cholmod();
+  }
+#endif
+  if (wanted == "eigen") {
+    return std::make_unique<EigenSimplicial>();
+  }
+  std::string known;
+  for (const std::string_view one : kNames) {
+    known += (known.empty() ? "" : ", ") + std::string(one);
+  }
+  throw std::invalid_argument("sparse Cholesky: no back-end '" + std::string(wanted) +
+                              "' in this build, which has: " + known);
+}
+
+}  // namespace signorini::lcp

@@ -1,0 +1,120 @@
+#include <signorini/lcp/sparse_cholesky.h>
+#include <signorini/lcp/whitened_rows.h>
+
+#include <bench/contact_families.h>
+#include <gtest/gtest.h>
+#include <random>
+
+namespace signorini::lcp {
+namespace {
+
+FactoredMatrix family(const char* name, int size) {
+  return std::get<FactoredMatrix>(bench::make_family({name, size, 100.0}).M);
+}
+
+/// G, column by column.
+Matrix dense_rows(const WhitenedRows& rows) {
+  Matrix G(rows.rows(), rows.degrees_of_freedom());
+  Vector column;
+  for (Index j = 0; j < G.cols(); ++j) {
+    rows.times(Vector::Unit(G.cols(), j), column);
+    G.col(j) = column;
+  }
+  return G;
+}
+
+TEST(WhitenedRows, ScaledProductIsTheMatrix) {
+  FactoredMatrix A = family("spheres", 40);
+  A.add_row(0.5);  // a row of its own, compliance alone
+  WhitenedRows rows;
+  rows.set(A);
+  const Matrix G = dense_rows(rows);
+  const Matrix S = rows.scale().asDiagonal();
+  const Matrix again = S * (G * G.transpose() + Matrix(rows.compliance().asDiagonal())) * S;
+  const Matrix formed(A.form());
+  EXPECT_LE((again - formed).cwiseAbs().maxCoeff(), 1e-14 * formed.cwiseAbs().maxCoeff());
+  EXPECT_LE((G.rowwise().squaredNorm() + rows.compliance() - Vector::Ones(G.rows()))
+                .cwiseAbs()
+                .maxCoeff(),
+            1e-14);
+}
+
+TEST(WhitenedRows, TransposeIsTheTranspose) {
+  WhitenedRows rows;
+  rows.set(family("wall", 3));
+  const Matrix G = dense_rows(rows);
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  Vector x(G.rows());
+  for (double& value : x) {
+    value = normal(random);
+  }
+  Vector u;
+  rows.transpose_times(x, u);
+  EXPECT_LE((u - G.transpose() * x).cwiseAbs().maxCoeff(), 1e-14 * x.lpNorm<1>());
+}
+
+TEST(WhitenedRows, BodySpaceMatrixIsIdentityPlusWeightedSquares) {
+  WhitenedRows rows;
+  rows.set(family("pyramid2d", 4));
+  const Matrix G = dense_rows(rows);
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> uniform(0.0, 10.0);
+  Vector d(G.rows());
+  for (double& value : d) {
+    value = uniform(random) < 3.0 ? 0.0 : uniform(random);
+  }
+  const Matrix H = Matrix(rows.body_space_matrix(d)).selfadjointView<Eigen::Lower>();
+  const Matrix expected = Matrix::Identity(G.cols(), G.cols()) + G.transpose() * d.asDiagonal() * G;
+  EXPECT_LE((H - expected).cwiseAbs().maxCoeff(), 1e-13 * expected.cwiseAbs().maxCoeff());
+}
+
+class SparseCholeskyBackEnd : public testing::TestWithParam<std::string_view> {};
+
+TEST_P(SparseCholeskyBackEnd, SolvesWhatItFactored) {
+  WhitenedRows rows;
+  rows.set(family("spheres", 200));
+  const auto cholesky = make_sparse_cholesky(GetParam());
+  EXPECT_EQ(cholesky->name(), GetParam());
+  cholesky->analyse(rows.body_space_matrix(Vector::Zero(rows.rows())));
+  for (const double weight : {1.0, 1e6}) {
+    const SparseMatrix& lower = rows.body_space_matrix(Vector::Constant(rows.rows(), weight));
+    ASSERT_TRUE(cholesky->factor(lower));
+    const Vector wanted = Vector::LinSpaced(lower.rows(), -1.0, 1.0);
+    const Vector right = lower.selfadjointView<Eigen::Lower>() * wanted;
+    Vector x = right;
+    cholesky->solve(x);
+    const Vector residual = lower.selfadjointView<Eigen::Lower>() * x - right;
+    // A backward stable solve: the residual is some roundings of |H| |x|.
+    EXPECT_LE(residual.cwiseAbs().maxCoeff(), 1e-13 * (1.0 + weight) * x.cwiseAbs().maxCoeff());
+  }
+}
+
+TEST_P(SparseCholeskyBackEnd, RefusesAnIndefiniteMatrix) {
+  SparseMatrix lower(2, 2);
+  lower.insert(0, 0) = 1.0;
+  lower.insert(1, 0) = 2.0;
+  lower.insert(1, 1) = 1.0;
+  const auto cholesky = make_sparse_cholesky(GetParam());
+  cholesky->analyse(lower);
+  EXPECT_FALSE(cholesky->factor(lower));
+  lower.coeffRef(1, 1) = 5.0;
+  EXPECT_TRUE(cholesky->factor(lower));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SparseCholeskyBackEnd,
+                         testing::ValuesIn(sparse_cholesky_names().begin(),
+                                           sparse_cholesky_names().end()),
+                         [](const auto& tested) { return std::string(tested.param); });
+
+TEST(SparseCholesky, UnknownNameListsTheKnownOnes) {
+  try {
+    (void)make_sparse_cholesky("none");
+    FAIL() << "an unknown back-end was made";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("eigen"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace signorini::lcp
