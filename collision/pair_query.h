@@ -1,10 +1,9 @@
 #pragma once
 
+#include <signorini/collision/contact_time.h>
 #include <signorini/collision/shape.h>
 #include <signorini/core/model/contact.h>
-#include <signorini/core/model/motion.h>
 
-#include <optional>
 #include <vector>
 
 namespace signorini::collision {
@@ -29,13 +28,5 @@ void find_intersection(const Shape& a, const Pose& pose_a, const Shape& b, const
 /// ends the overlap).
 [[nodiscard]] double signed_distance(const Shape& a, const Pose& pose_a, const Shape& b,
                                      const Pose& pose_b);
-
-/// Contact time: the first t in [0, duration] at which the shapes touch while approaching, along
-/// the given motions (of the *shape* frames), by conservative advancement. Touching at t = 0 counts
-/// only if approaching; pairs that touch and rest or separate report their next approach.
-/// @return nothing if they do not come into contact.
-[[nodiscard]] std::optional<double> contact_time(const Shape& a, const Motion& motion_a,
-                                                 const Shape& b, const Motion& motion_b,
-                                                 double duration);
 
 }  // namespace signorini::collision

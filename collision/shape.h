@@ -35,8 +35,10 @@ struct Collider {
 
 /// @throws std::invalid_argument naming the shape, the field, its value and the bound.
 void validate(const Shape& shape);
-/// The shape, its pose (finite, unit quaternion to 1e-6), its material, its body in [0,
-/// body_count).
+/// Finite, unit quaternion to 1e-6. @throws std::invalid_argument naming the field and its value.
+void validate(const Pose& pose);
+/// The shape, its pose, its material, its body in [0, body_count).
+/// @throws std::invalid_argument naming the collider, the field, its value and the bound.
 void validate(const Collider& collider, int body_count);
 
 /// Mass and inertia about the centre of mass, shape axes, of a solid of uniform density.
@@ -44,12 +46,17 @@ struct MassProperties {
   double mass;   ///< kg
   Mat3 inertia;  ///< kg m^2
 };
-/// Sphere: 2/5 m r^2. Box: m/12 (b^2 + c^2) with full edges. @throws std::invalid_argument for a
-/// half-space, which has none.
+/// Sphere: 2/5 m r^2. Box: m/12 (b^2 + c^2) with full edges.
+/// @param density kg/m^3, finite and > 0
+/// @throws std::invalid_argument for a bad shape or density, and for a half-space, which has none.
 [[nodiscard]] MassProperties mass_properties(const Shape& shape, double density);
 
 /// The largest distance of a point of the shape from the origin of a frame in which the shape has
 /// this pose; +infinity for a half-space. m.
 [[nodiscard]] double bounding_radius(const Shape& shape, const Pose& pose);
+
+/// The support function: the largest n.x over the shape, m (n unit). +infinity for a half-space
+/// unless n is its normal to 1e-12.
+[[nodiscard]] double support(const Shape& shape, const Pose& pose, const Vec3& n);
 
 }  // namespace signorini::collision

@@ -1,0 +1,154 @@
+#include <signorini/collision/collision_world.h>
+#include <signorini/collision/contact_time.h>
+#include <signorini/collision/feature_id.h>
+#include <signorini/collision/pair_query.h>
+#include <signorini/collision/sweep.h>
+#include <signorini/core/model/number_text.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace signorini::collision {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Half the extents of the shape's axis-aligned bounds about its frame's origin.
+struct HalfExtents {
+  const Quat& orientation;
+
+  Vec3 operator()(const Sphere& sphere) const { return Vec3::Constant(sphere.radius); }
+  Vec3 operator()(const Box& box) const {
+    return orientation.toRotationMatrix().cwiseAbs() * box.half_extents;
+  }
+  Vec3 operator()(const HalfSpace&) const { return Vec3::Constant(kInfinity); }
+};
+
+/// Widened by some roundings of its numbers, so that shapes that touch are never passed over.
+Bounds around(const Vec3& centre, const Vec3& half) {
+  constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
+  const Vec3 reach = half + kRounding * (half + centre.cwiseAbs());
+  return {centre - reach, centre + reach};
+}
+
+/// Everywhere that a collider can be in [0, duration].
+Bounds swept_bounds(const Collider& collider, const Motion& motion, double duration) {
+  const SpeedBound speed = motion.speed_bound(0.0, duration);
+  const double reach = bounding_radius(collider.shape, collider.local);
+  return around(motion.pose(0.0).position, Vec3::Constant(reach + speed.linear * duration));
+}
+
+void check_finder_input(const std::string& what, std::size_t given, std::size_t bodies,
+                        const char* number, double value) {
+  if (given != bodies) {
+    throw std::invalid_argument(what + ": must be one a body, " + std::to_string(bodies) +
+                                ", got " + std::to_string(given));
+  }
+  if (!(value >= 0.0) || !std::isfinite(value)) {
+    throw std::invalid_argument(std::string(number) + ": must be finite and >= 0, got " +
+                                number_text(value));
+  }
+}
+
+std::vector<bool> dynamic_bodies(const Bodies& bodies) {
+  std::vector<bool> result;
+  result.reserve(bodies.size());
+  for (const Body& body : bodies) {
+    result.push_back(body.is_dynamic());
+  }
+  return result;
+}
+
+}  // namespace
+
+CollisionWorld::CollisionWorld(const Bodies& bodies, std::vector<Collider> colliders,
+                               PairingRule rule)
+    : colliders_(std::move(colliders)), is_dynamic_(dynamic_bodies(bodies)), rule_(rule) {
+  for (Collider& collider : colliders_) {
+    validate(collider, static_cast<int>(bodies.size()));
+    if (std::holds_alternative<HalfSpace>(collider.shape) && is_dynamic_[collider.body]) {
+      throw std::invalid_argument("collider '" + collider.name +
+                                  "': body: a half-space is immovable, body " +
+                                  std::to_string(collider.body) + " is dynamic");
+    }
+    collider.local.orientation.normalize();
+  }
+}
+
+bool CollisionWorld::may_touch(int collider_a, int collider_b) const {
+  const int body_a = colliders_[collider_a].body;
+  const int body_b = colliders_[collider_b].body;
+  return body_a != body_b && (is_dynamic_[body_a] || is_dynamic_[body_b]);
+}
+
+void CollisionWorld::find(const State& state, double margin, ContactSet& contacts) {
+  check_finder_input("state", state.size(), is_dynamic_.size(), "margin", margin);
+  for (std::size_t i = 0; i < state.size(); ++i) {
+    try {
+      validate(state[i].pose());
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument("body " + std::to_string(i) + ": " + error.what());
+    }
+  }
+
+  std::vector<Pose> poses;
+  std::vector<Bounds> bounds;
+  for (const Collider& collider : colliders_) {
+    const Pose pose = state[collider.body].pose() * collider.local;
+    const Vec3 half = std::visit(HalfExtents{pose.orientation}, collider.shape);
+    poses.push_back(pose);
+    bounds.push_back(around(pose.position, half + Vec3::Constant(0.5 * margin)));
+  }
+  overlapping_pairs(bounds, pairs_);
+
+  contacts.clear();
+  for (const auto& [a, b] : pairs_) {
+    if (!may_touch(a, b)) {
+      continue;
+    }
+    find_intersection(colliders_[a].shape, poses[a], colliders_[b].shape, poses[b], margin, found_);
+    for (Contact& contact : found_) {
+      contact.body_a = colliders_[a].body;
+      contact.body_b = colliders_[b].body;
+      contact.material = pair(colliders_[a].material, colliders_[b].material, rule_);
+      contact.feature_id = scene_feature_id(a, b, contact.feature_id);
+      contacts.push_back(contact);
+    }
+  }
+}
+
+std::optional<FirstContact> CollisionWorld::first_contact(std::span<const Motion* const> motions,
+                                                          double duration) {
+  check_finder_input("motions", motions.size(), is_dynamic_.size(), "duration", duration);
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    if (motions[i] == nullptr) {
+      throw std::invalid_argument("motions: " + std::to_string(i) + ": must not be null");
+    }
+  }
+  std::vector<Bounds> bounds;
+  for (const Collider& collider : colliders_) {
+    bounds.push_back(swept_bounds(collider, *motions[collider.body], duration));
+  }
+  overlapping_pairs(bounds, pairs_);
+
+  std::optional<FirstContact> first;
+  for (const auto& [a, b] : pairs_) {
+    if (!may_touch(a, b)) {
+      continue;
+    }
+    const MovingShape moving_a{colliders_[a].shape, *motions[colliders_[a].body],
+                               colliders_[a].local};
+    const MovingShape moving_b{colliders_[b].shape, *motions[colliders_[b].body],
+                               colliders_[b].local};
+    const std::optional<double> time =
+        contact_time(moving_a, moving_b, first ? first->time : duration);
+    if (time && (!first || *time < first->time)) {
+      first = FirstContact{*time, colliders_[a].body, colliders_[b].body};
+    }
+  }
+  return first;
+}
+
+}  // namespace signorini::collision
