@@ -1,0 +1,197 @@
+// node e2e.mjs CHROMIUM REPORT.html FOLDER: opens the sample report (tests/validation/sample_report.h)
+// from the disk as a reader would, and leaves pictures of it in the folder.
+
+import assert from 'node:assert/strict';
+import { mkdirSync } from 'node:fs';
+import { join } from 'node:path';
+import process from 'node:process';
+import { pathToFileURL } from 'node:url';
+import { chromium } from 'playwright-core';
+import type { Browser, Page } from 'playwright-core';
+
+const [browserPath, reportPath, pictures] = process.argv.slice(2);
+if (!browserPath || !reportPath || !pictures) {
+  console.error('usage: node e2e.mjs CHROMIUM REPORT.html FOLDER');
+  process.exit(64);
+}
+const reportUrl = pathToFileURL(reportPath).href;
+mkdirSync(pictures, { recursive: true });
+
+interface View {
+  width: number;
+  dark?: boolean;
+}
+
+/** Opens the report; whatever is logged, thrown or requested beyond the file fails the test. */
+async function withPage(browser: Browser, view: View, use: (page: Page) => Promise<void>): Promise<void> {
+  const context = await browser.newContext({
+    viewport: { width: view.width, height: 900 }, colorScheme: view.dark ? 'dark' : 'light',
+  });
+  const page = await context.newPage();
+  const complaints: string[] = [];
+  page.on('console', (message) => {
+    if (message.type() === 'error' || message.type() === 'warning') complaints.push(message.text());
+  });
+  page.on('pageerror', (error) => complaints.push(String(error)));
+  page.on('request', (request) => {
+    const url = request.url();
+    if (url.split('#')[0] !== reportUrl && !url.startsWith('data:')) complaints.push(`requested ${url}`);
+  });
+  await page.goto(reportUrl);
+  await use(page);
+  await context.close();
+  assert.deepEqual(complaints, []);
+}
+
+function picture(page: Page, name: string): Promise<Buffer> {
+  return page.screenshot({ path: join(pictures as string, `${name}.png`), fullPage: true });
+}
+
+async function openScene(page: Page, title: string): Promise<void> {
+  await page.getByRole('link', { name: title, exact: true }).click();
+  await page.getByRole('heading', { level: 1, name: title }).waitFor();
+}
+
+/** How many different colours the canvases of all plots hold; 1 is an empty one. */
+function coloursOfPlots(page: Page): Promise<number[]> {
+  return page.evaluate(() => [...document.querySelectorAll('canvas')].map((canvas) => {
+    const { data } = canvas.getContext('2d')!.getImageData(0, 0, canvas.width, canvas.height);
+    return new Set(new Uint32Array(data.buffer)).size;
+  }));
+}
+
+/** Nothing but tables that scroll by themselves may be wider than the window. */
+async function assertNoSidewaysScroll(page: Page): Promise<void> {
+  const [content, view] = await page.evaluate(() =>
+    [document.documentElement.scrollWidth, document.documentElement.clientWidth] as const);
+  assert.ok(content <= view, `content is ${content} px wide, the window ${view} px`);
+}
+
+async function sceneNames(page: Page): Promise<(string | null)[]> {
+  const rows = await page.locator('.scenes tbody tr').all();
+  return Promise.all(rows.map((row) => row.getAttribute('data-scene')));
+}
+
+async function frontPage(page: Page): Promise<void> {
+  assert.equal(await page.locator('h1').textContent(), '1 of 16 scenes fails');
+  assert.equal((await sceneNames(page)).length, 16);
+  assert.equal((await sceneNames(page))[0], 'stack-of-5-boxes');
+  await assertNoSidewaysScroll(page);
+  await picture(page, 'front');
+
+  await page.keyboard.press('/');
+  await page.keyboard.type('ball drop');
+  assert.deepEqual(await sceneNames(page),
+    ['ball-drop-e0', 'ball-drop-e0.5', 'ball-drop-e0.9', 'ball-drop-e1']);
+  await page.getByRole('button', { name: "Bullet's error" }).click();
+  assert.equal((await sceneNames(page))[0], 'ball-drop-e1');
+  await picture(page, 'front-filtered');
+
+  await page.locator('#filter').fill('');
+  await page.getByRole('button', { name: 'failed' }).click();
+  assert.deepEqual(await sceneNames(page), ['stack-of-5-boxes']);
+}
+
+async function scenePage(page: Page): Promise<void> {
+  await openScene(page, 'Ball dropped, e = 0.5');
+  const colours = await coloursOfPlots(page);
+  assert.equal(colours.length, 3);
+  for (const count of colours) assert.ok(count > 10, `a plot has ${count} colours`);
+  await assertNoSidewaysScroll(page);
+  await picture(page, 'scene');
+
+  // The cursor in one plot stands in all, and their legends show numbers there.
+  const plots = page.locator('.u-over');
+  await plots.first().hover({ position: { x: 120, y: 60 } });
+  const values = await page.locator('.u-legend .u-series .u-value').allTextContents();
+  assert.ok(values.length > 0 && values.filter((value) => /\d/.test(value)).length >= 6, values.join());
+  await picture(page, 'scene-cursor');
+}
+
+async function keyboard(page: Page): Promise<void> {
+  const heading = () => page.locator('h1').innerText();
+  await page.keyboard.press('ArrowRight');
+  await page.getByRole('heading', { name: 'Stack of 5 boxes' }).waitFor();
+  await page.keyboard.press('ArrowRight');
+  await page.getByRole('heading', { name: 'Free flight' }).waitFor();
+  await page.keyboard.press('ArrowLeft');
+  await page.getByRole('heading', { name: 'Stack of 5 boxes' }).waitFor();
+  assert.match(await heading(), /fail/);
+  assert.equal(await page.locator('.checks tbody').first().locator('th').first().innerText()
+    .then((text) => text.split('\n')[0]), 'deepest penetration');
+  await picture(page, 'scene-failed');
+  await page.keyboard.press('Escape');
+  await page.getByRole('heading', { name: '1 of 16 scenes fails' }).waitFor();
+  await openScene(page, 'Free flight');
+  await page.keyboard.press('/');
+  await page.waitForFunction(() => document.activeElement?.id === 'filter');
+}
+
+async function hostileTexts(page: Page): Promise<void> {
+  await openScene(page, 'Texts with </script>, <!-- and | in them');
+  assert.match(await page.locator('.description').innerText(), /<\/script><script>throw/);
+  assert.equal(await page.locator('article img, article b').count(), 0);
+}
+
+async function manyLines(page: Page): Promise<void> {
+  await openScene(page, "Newton's cradle, five touching balls");
+  await picture(page, 'scene-cradle');
+  await page.goBack();
+  await openScene(page, 'Torque-free spin (Dzhanibekov)');
+  await picture(page, 'scene-spin');
+  await page.goBack();
+  await openScene(page, 'The wedge: sequential against simultaneous impulses');
+  await picture(page, 'scene-wedge');
+}
+
+async function everythingInOne(page: Page): Promise<void> {
+  await page.getByRole('link', { name: 'All scenes on one page' }).click();
+  await page.locator('article').nth(15).waitFor();
+  assert.equal(await page.locator('article').count(), 16);
+  await page.pdf({ path: join(pictures as string, 'all.pdf'), preferCSSPageSize: true });
+}
+
+async function printed(page: Page): Promise<void> {
+  await page.emulateMedia({ media: 'print' });
+  await page.setViewportSize({ width: 703, height: 900 });
+  await picture(page, 'print-front');
+  await page.emulateMedia({ media: 'screen' });
+  await openScene(page, 'Ball dropped, e = 0.5');
+  await page.emulateMedia({ media: 'print' });
+  await picture(page, 'print-scene');
+}
+
+async function darkAndNarrow(page: Page): Promise<void> {
+  await assertNoSidewaysScroll(page);
+  await picture(page, `front-${page.viewportSize()?.width}-dark`);
+  await openScene(page, 'Ball dropped, e = 0.5');
+  await assertNoSidewaysScroll(page);
+  await picture(page, `scene-${page.viewportSize()?.width}-dark`);
+}
+
+const steps: [string, View, (page: Page) => Promise<void>][] = [
+  ['front page, filter, sort', { width: 1280 }, frontPage],
+  ['scene page, plots, shared cursor', { width: 1280 }, scenePage],
+  ['keyboard', { width: 1280 }, keyboard],
+  ['texts are only texts', { width: 1280 }, hostileTexts],
+  ['plots of many lines', { width: 1280 }, manyLines],
+  ['all scenes on one page, as PDF', { width: 1280 }, everythingInOne],
+  ['print', { width: 1280 }, printed],
+  ['dark and wide', { width: 1600, dark: true }, darkAndNarrow],
+  ['dark and narrow', { width: 800, dark: true }, darkAndNarrow],
+];
+
+// A browser of its own, with a new profile that is removed at the end.
+const browser = await chromium.launch({
+  executablePath: browserPath,
+  args: ['--no-sandbox', '--disable-gpu', '--no-first-run', '--disable-background-networking',
+    '--disable-component-update', '--disable-sync', '--disable-dev-shm-usage'],
+});
+try {
+  for (const [name, view, step] of steps) {
+    await withPage(browser, view, step);
+    console.log(`passed: ${name}`);
+  }
+} finally {
+  await browser.close();
+}
