@@ -1,4 +1,5 @@
 #include <signorini/lcp/block_mass.h>
+#include <signorini/lcp/number_text.h>
 
 #include <Eigen/Cholesky>
 #include <stdexcept>
@@ -6,6 +7,8 @@
 
 namespace signorini::lcp {
 namespace {
+
+constexpr double kAsymmetry = 1e-12;  // rounding of a rotated inertia, of the largest entry
 
 void check_block(const MatrixRef& block, const char* what) {
   if (block.rows() != block.cols() || block.rows() == 0) {
@@ -16,21 +19,29 @@ void check_block(const MatrixRef& block, const char* what) {
   if (!block.allFinite()) {
     throw std::invalid_argument(std::string(what) + ": must be finite");
   }
+  const double asymmetry = (block - block.transpose()).cwiseAbs().maxCoeff();
+  if (const double largest = block.cwiseAbs().maxCoeff(); asymmetry > kAsymmetry * largest) {
+    throw std::invalid_argument(std::string(what) + ": must be symmetric to 1e-12 of its largest " +
+                                "entry " + number_text(largest) + ", got an asymmetry of " +
+                                number_text(asymmetry));
+  }
 }
 
 }  // namespace
 
 int BlockMass::add_inverse(const MatrixRef& inverse_mass) {
   check_block(inverse_mass, "BlockMass: inverse mass");
-  return add(inverse_mass, false);
+  if ((inverse_mass.diagonal().array() < 0.0).any()) {
+    throw std::invalid_argument("BlockMass: inverse mass: its diagonal must be >= 0, got " +
+                                number_text(inverse_mass.diagonal().minCoeff()));
+  }
+  Matrix symmetric = inverse_mass;
+  symmetric.triangularView<Eigen::StrictlyUpper>() = inverse_mass.transpose();
+  return add(symmetric, false);
 }
 
 int BlockMass::add_mass(const MatrixRef& mass) {
   check_block(mass, "BlockMass: mass");
-  const double scale = mass.cwiseAbs().maxCoeff();
-  if ((mass - mass.transpose()).cwiseAbs().maxCoeff() > 1e-12 * scale) {
-    throw std::invalid_argument("BlockMass: mass: must be symmetric to 1e-12 of its largest entry");
-  }
   const Eigen::LLT<Matrix> factor(mass);
   if (factor.info() != Eigen::Success) {
     throw std::invalid_argument("BlockMass: mass: must be positive definite");

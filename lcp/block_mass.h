@@ -14,8 +14,9 @@ namespace signorini::lcp {
 /// Immovable and driven bodies have no block: their velocity belongs in q.
 class BlockMass {
  public:
-  /// Adds a block by its inverse mass W_k (d x d, symmetric, only checked to be finite and square).
-  /// @return the block's number. @throws std::invalid_argument
+  /// Adds a block by its inverse mass W_k (d x d). Positive definiteness is the caller's promise.
+  /// @return the block's number. @throws std::invalid_argument unless W_k is square, finite,
+  /// symmetric to 1e-12 of its largest entry (the lower triangle is used) and its diagonal is >= 0.
   int add_inverse(const MatrixRef& inverse_mass);
 
   /// Adds a block by its mass M_k (d x d). @return the block's number.

@@ -10,6 +10,9 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kFloorsAllowed = 4.0;
+// No rounding floor excuses a residual above this: where z is so large that |M||z| has no digits
+// left beside q, the floor is large too, and an infeasible problem would pass for a rounded one.
+constexpr double kRoundingCeiling = 1e-5;
 
 struct Bounds {
   long double lower;
@@ -64,7 +67,7 @@ Certificate certify(const Problem& problem, const VectorRef& z, Vector* w) {
   const std::vector<long double> wide_z(z.data(), z.data() + n);
   std::vector<long double> wide_w(n);
   multiply(problem.M, wide_z.data(), wide_w.data());
-  Vector magnitude;
+  std::vector<long double> magnitude;
   absolute_multiply(problem.M, z, magnitude);
   Vector scale;
   diagonal(problem.M, scale);
@@ -75,7 +78,7 @@ Certificate certify(const Problem& problem, const VectorRef& z, Vector* w) {
   long double unit_free = 0.0L;
   long double backward = 0.0L;
   long double z_dot_w = 0.0L;
-  double most = 0.0;
+  long double most = 0.0L;
   Certificate certificate;
   for (Index i = 0; i < n; ++i) {
     wide_w[i] += problem.q[i];
@@ -83,7 +86,7 @@ Certificate certify(const Problem& problem, const VectorRef& z, Vector* w) {
       (*w)[i] = static_cast<double>(wide_w[i]);
     }
     const double d = scale[i] > 0.0 ? scale[i] : 1.0;
-    const long double scaled = std::abs(d * step(wide_z[i], wide_w[i], d, bounds[i]));
+    const long double scaled = d * std::abs(step(wide_z[i], wide_w[i], d, bounds[i]));
     const long double plain = std::abs(step(wide_z[i], wide_w[i], 1.0L, bounds[i]));
     if (!std::isfinite(scaled) || !std::isfinite(plain) || !std::isfinite(magnitude[i])) {
       return refuse();
@@ -93,10 +96,10 @@ Certificate certify(const Problem& problem, const VectorRef& z, Vector* w) {
       unit_free = scaled;
       certificate.worst_row = static_cast<int>(i);
     }
-    const double size = magnitude[i] + std::abs(problem.q[i]);
+    const long double size = magnitude[i] + std::abs(problem.q[i]);
     most = std::max(most, size);
     if (scaled > 0.0L) {
-      backward = std::max(backward, scaled / (d * std::abs(z[i]) + size));
+      backward = std::max(backward, scaled / (d * std::abs(wide_z[i]) + size));
     }
     if (bounds[i].lower == 0.0L && bounds[i].upper == kInfinity) {
       z_dot_w += wide_z[i] * wide_w[i];
@@ -105,10 +108,10 @@ Certificate certify(const Problem& problem, const VectorRef& z, Vector* w) {
     }
   }
   certificate.natural_residual = static_cast<double>(natural / (1.0L + q_inf));
-  certificate.natural_floor = kEpsilon * most / (1.0 + q_inf);
+  certificate.natural_floor = static_cast<double>(kEpsilon * most / (1.0L + q_inf));
   if (q_inf > 0.0) {
     certificate.unit_free_residual = static_cast<double>(unit_free / q_inf);
-    certificate.rounding_floor = kEpsilon * (most / q_inf);
+    certificate.rounding_floor = static_cast<double>(kEpsilon * most / q_inf);
   } else {
     certificate.unit_free_residual = unit_free == 0.0L ? 0.0 : kInfinity;
     certificate.rounding_floor = 0.0;
@@ -124,11 +127,12 @@ Status judge(const Certificate& certificate, double tolerance, Status otherwise)
   if (natural <= tolerance && unit_free <= tolerance) {  // false for NaN
     return Status::kSolved;
   }
-  const bool natural_ok =
-      natural <= std::max(tolerance, kFloorsAllowed * certificate.natural_floor);
-  const bool unit_free_ok =
-      unit_free <= std::max(tolerance, kFloorsAllowed * certificate.rounding_floor);
-  return natural_ok && unit_free_ok ? Status::kSolvedToRounding : otherwise;
+  const auto within = [tolerance](double residual, double floor) {
+    return residual <= std::max(tolerance, std::min(kFloorsAllowed * floor, kRoundingCeiling));
+  };
+  return within(natural, certificate.natural_floor) && within(unit_free, certificate.rounding_floor)
+             ? Status::kSolvedToRounding
+             : otherwise;
 }
 
 }  // namespace signorini::lcp

@@ -38,13 +38,16 @@ struct Certificate {
 };
 
 /// Recomputes the certificate of z. Cost: one product with M in long double, one with |M|.
-/// @param problem must have passed check_shapes()
+/// @param problem must have passed check_shapes(), with finite values; numbers from 1e-150 to 1e150
+/// neither overflow nor underflow on the way (long double has the range), residuals beyond double
+/// are +infinity
 /// @param z n numbers; anything not finite gives residuals of +infinity, never a small number
 /// @param w if not null, receives M z + q rounded to double
 [[nodiscard]] Certificate certify(const Problem& problem, const VectorRef& z, Vector* w = nullptr);
 
 /// The only definition of "solved": kSolved if both residuals are <= tolerance; else
-/// kSolvedToRounding if each residual is <= tolerance or <= 4 of its floors; else `otherwise`.
+/// kSolvedToRounding if each residual is <= tolerance, or <= 4 of its floors and <= 1e-5 (a floor
+/// above that says that z is too large to mean anything beside q); else `otherwise`.
 [[nodiscard]] Status judge(const Certificate& certificate, double tolerance, Status otherwise);
 
 }  // namespace signorini::lcp

@@ -1,4 +1,5 @@
 #include <signorini/lcp/factored_matrix.h>
+#include <signorini/lcp/number_text.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +11,7 @@ namespace signorini::lcp {
 int FactoredMatrix::add_row(double compliance) {
   if (!(compliance >= 0.0) || !std::isfinite(compliance)) {
     throw std::invalid_argument("FactoredMatrix: compliance of row " + std::to_string(rows()) +
-                                ": must be finite and >= 0, got " + std::to_string(compliance));
+                                ": must be finite and >= 0, got " + number_text(compliance));
   }
   compliance_.push_back(compliance);
   row_start_.push_back(row_start_.back());

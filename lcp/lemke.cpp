@@ -1,5 +1,6 @@
 #include <signorini/lcp/lemke.h>
 #include <signorini/lcp/lemke_ray.h>
+#include <signorini/lcp/number_text.h>
 #include <signorini/lcp/ray.h>
 
 #include <algorithm>
@@ -25,7 +26,7 @@ constexpr double kTightRay = 1e-10;         // M^T y <= 0 is met to this fractio
 void require(bool good, const char* setting, const char* bound, double value) {
   if (!good) {
     throw std::invalid_argument(std::string("Lemke settings: ") + setting + ": must be " + bound +
-                                ", got " + std::to_string(value));
+                                ", got " + number_text(value));
   }
 }
 

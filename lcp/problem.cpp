@@ -1,3 +1,4 @@
+#include <signorini/lcp/number_text.h>
 #include <signorini/lcp/problem.h>
 
 #include <cmath>
@@ -14,15 +15,14 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 }
 
 std::string indexed(const char* name, Index i, double value) {
-  return std::string(name) + "[" + std::to_string(i) + "] is " + std::to_string(value);
+  return std::string(name) + "[" + std::to_string(i) + "] is " + number_text(value);
 }
 
 std::string bad_matrix_value(const Matrix& M) {
   for (Index j = 0; j < M.cols(); ++j) {
     for (Index i = 0; i < M.rows(); ++i) {
       if (!std::isfinite(M(i, j))) {
-        return "M(" + std::to_string(i) + ", " + std::to_string(j) + ") is " +
-               std::to_string(M(i, j));
+        return "M(" + std::to_string(i) + ", " + std::to_string(j) + ") is " + number_text(M(i, j));
       }
     }
   }
@@ -34,7 +34,7 @@ std::string bad_matrix_value(const SparseMatrix& M) {
     for (SparseMatrix::InnerIterator it(M, j); it; ++it) {
       if (!std::isfinite(it.value())) {
         return "M(" + std::to_string(it.row()) + ", " + std::to_string(j) + ") is " +
-               std::to_string(it.value());
+               number_text(it.value());
       }
     }
   }
@@ -47,7 +47,7 @@ std::string bad_matrix_value(const FactoredMatrix& M) {  // W is checked when it
       for (int k = 0; k < M.mass.dimension(entry.block); ++k) {
         if (!std::isfinite(M.values(entry)[k])) {
           return "J: row " + std::to_string(i) + ", block " + std::to_string(entry.block) +
-                 ", value " + std::to_string(k) + " is " + std::to_string(M.values(entry)[k]);
+                 ", value " + std::to_string(k) + " is " + number_text(M.values(entry)[k]);
         }
       }
     }
@@ -140,6 +140,9 @@ void multiply(const MatrixForm& M, const Scalar* z, Scalar* w) {
   std::fill(w, w + rows(M), Scalar(0));
   if (const auto* dense = std::get_if<Matrix>(&M)) {
     for (Index j = 0; j < dense->cols(); ++j) {
+      if (z[j] == Scalar(0)) {
+        continue;
+      }
       for (Index i = 0; i < dense->rows(); ++i) {
         w[i] += (*dense)(i, j) * z[j];
       }
@@ -154,18 +157,23 @@ void multiply(const MatrixForm& M, const Scalar* z, Scalar* w) {
   }
 }
 
-void absolute_multiply(const MatrixForm& M, const VectorRef& z, Vector& out) {
+void absolute_multiply(const MatrixForm& M, const VectorRef& z, std::vector<long double>& out) {
+  out.assign(rows(M), 0.0L);
   if (const auto* dense = std::get_if<Matrix>(&M)) {
-    out.noalias() = dense->cwiseAbs() * z.cwiseAbs();
+    for (Index j = 0; j < dense->cols(); ++j) {
+      const long double size = std::abs(z[j]);
+      for (Index i = 0; i < dense->rows() && size > 0.0L; ++i) {
+        out[i] += std::abs((*dense)(i, j)) * size;
+      }
+    }
     return;
   }
   const auto* factored = std::get_if<FactoredMatrix>(&M);
   const SparseMatrix formed = factored ? factored->form() : SparseMatrix();
   const SparseMatrix& sparse = factored ? formed : std::get<SparseMatrix>(M);
-  out.setZero(sparse.rows());
   for (Index j = 0; j < sparse.outerSize(); ++j) {
     for (SparseMatrix::InnerIterator it(sparse, j); it; ++it) {
-      out[it.row()] += std::abs(it.value()) * std::abs(z[j]);
+      out[it.row()] += std::abs(it.value()) * static_cast<long double>(std::abs(z[j]));
     }
   }
 }

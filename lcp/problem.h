@@ -57,8 +57,9 @@ void check_shapes(const Problem& problem);
 template <typename Scalar>
 void multiply(const MatrixForm& M, const Scalar* z, Scalar* w);
 
-/// out = |M| |z|, entries of a factored M taken after forming them. Used by the rounding floor.
-void absolute_multiply(const MatrixForm& M, const VectorRef& z, Vector& out);
+/// out = |M| |z| in long double, entries of a factored M taken after forming them (in double). Used
+/// by the rounding floor.
+void absolute_multiply(const MatrixForm& M, const VectorRef& z, std::vector<long double>& out);
 
 /// out = M^T y in long double.
 void transpose_multiply(const MatrixForm& M, const VectorRef& y, std::vector<long double>& out);

@@ -1,3 +1,4 @@
+#include <signorini/lcp/number_text.h>
 #include <signorini/lcp/ray.h>
 #include <signorini/lcp/solver.h>
 
@@ -7,9 +8,9 @@
 namespace signorini::lcp {
 
 void SolverSettings::validate() const {
-  if (!(tolerance > 0.0)) {
-    throw std::invalid_argument("settings: tolerance: must be > 0, got " +
-                                std::to_string(tolerance));
+  if (!(tolerance > 0.0 && tolerance < 1.0)) {
+    throw std::invalid_argument("settings: tolerance: must be in (0, 1), got " +
+                                number_text(tolerance));
   }
   if (max_iterations < -1) {
     throw std::invalid_argument(
@@ -18,7 +19,7 @@ void SolverSettings::validate() const {
   }
   if (!(time_limit > 0.0)) {
     throw std::invalid_argument("settings: time_limit: must be > 0 s, got " +
-                                std::to_string(time_limit));
+                                number_text(time_limit));
   }
 }
 

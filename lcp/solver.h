@@ -13,8 +13,9 @@ namespace signorini::lcp {
 
 /// What every solver is told. Its own settings derive from these.
 struct SolverSettings {
-  /// Both residuals of the certificate must be at most this. Dimensionless, > 0. 1e-8 is what the
-  /// field's exact solvers aim at; below 1e-12 most contact problems meet their rounding floor.
+  /// Both residuals of the certificate must be at most this. Dimensionless, in (0, 1): z = 0 always
+  /// has a unit-free residual of at most 1. 1e-8 is what the field's exact solvers aim at; below
+  /// 1e-12 most contact problems meet their rounding floor.
   double tolerance = 1e-8;
   /// Pivots, sweeps or iterations, the solver's own unit; -1: the solver's own default.
   int max_iterations = -1;

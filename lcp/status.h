@@ -11,7 +11,7 @@ namespace signorini::lcp {
 enum class Status : std::uint8_t {
   kNotRun,              ///< nothing was computed yet; z, w and the certificate are NaN
   kSolved,              ///< both residuals are within the tolerance
-  kSolvedToRounding,    ///< residual above the tolerance but at most four rounding floors
+  kSolvedToRounding,    ///< residual above the tolerance, but at most four rounding floors and 1e-5
   kInfeasible,          ///< Result::ray proves, in exact arithmetic, that no z satisfies the bounds
   kNoSolutionBelow,     ///< Result::ray proves that every feasible z has |z|_1 >= Result::ray_bound
   kRayUnproven,         ///< ended on a ray that proves nothing about this matrix
