@@ -94,7 +94,7 @@ struct Report {
 /// report.json and report.html, text
 /// that is not UTF-8 is written with U+FFFD in place of the bad bytes. The fields of report.json
 /// are documented in docs/report-schema.md; NaN and infinity are the strings "NaN", "Infinity" and
-/// "-Infinity". report.html carries the plots thinned to at most 902 points a line (the lowest and
+/// "-Infinity". report.html carries the plots thinned to at most 900 points a line (the lowest and
 /// the highest of each stretch are kept) and 7 digits; report.json carries them whole.
 ///
 /// @return the paths of the files written. Without report.html, report.md says why.

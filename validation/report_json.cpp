@@ -13,9 +13,10 @@ namespace signorini::validation {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using SeriesToJson = std::function<Json(const Series&)>;
+/// The lines of a plot, whole or as the page wants them.
+using LinesToJson = std::function<Json(const std::vector<Series>&)>;
 
-constexpr std::size_t kStretchesOnPage = 300;
+constexpr std::size_t kMaxPointsOnPage = 900;
 
 /// JSON has no NaN and no infinity: they are strings that JavaScript's Number() and Python's
 /// float() read.
@@ -39,19 +40,27 @@ double rounded_to_7_digits(double value) {
   return std::isfinite(value) ? std::strtod(fmt::format("{:.7g}", value).c_str(), nullptr) : value;
 }
 
-Json whole_series(const Series& series) {
+Json series_json(const Series& series) {
   return {{"name", series.name},
           {"engine", series.engine},
           {"x", numbers(series.x)},
           {"y", numbers(series.y)}};
 }
 
-Json page_series(const Series& series) {
-  Series drawn = thinned(series, kStretchesOnPage);
-  std::transform(drawn.x.begin(), drawn.x.end(), drawn.x.begin(), rounded_to_7_digits);
-  std::transform(drawn.y.begin(), drawn.y.end(), drawn.y.begin(), rounded_to_7_digits);
-  Json result = whole_series(drawn);
-  result["points"] = series.x.size();
+Json whole_lines(const std::vector<Series>& lines) {
+  Json result = Json::array();
+  for (const Series& line : lines) result.push_back(series_json(line));
+  return result;
+}
+
+Json page_lines(const std::vector<Series>& lines) {
+  Json result = Json::array();
+  for (Series& line : thinned(lines, kMaxPointsOnPage)) {
+    std::transform(line.x.begin(), line.x.end(), line.x.begin(), rounded_to_7_digits);
+    std::transform(line.y.begin(), line.y.end(), line.y.begin(), rounded_to_7_digits);
+    result.push_back(series_json(line));
+    result.back()["points"] = lines[result.size() - 1].x.size();
+  }
   return result;
 }
 
@@ -69,14 +78,12 @@ Json check_json(const Check& check) {
           {"verdict", to_string(check.judged())}};
 }
 
-Json plot_json(const Plot& plot, const SeriesToJson& series_json) {
-  Json result = {{"title", plot.title},
-                 {"x_label", plot.x_label},
-                 {"y_label", plot.y_label},
-                 {"log_y", plot.log_y},
-                 {"series", Json::array()}};
-  for (const Series& series : plot.series) result["series"].push_back(series_json(series));
-  return result;
+Json plot_json(const Plot& plot, const LinesToJson& lines_json) {
+  return {{"title", plot.title},
+          {"x_label", plot.x_label},
+          {"y_label", plot.y_label},
+          {"log_y", plot.log_y},
+          {"series", lines_json(plot.series)}};
 }
 
 Json table_json(const Table& table) {
@@ -88,7 +95,7 @@ Json check_index(const SceneReport& scene, const Check* check) {
   return check == nullptr ? Json(nullptr) : Json(check - scene.checks.data());
 }
 
-Json scene_json(const SceneReport& scene, const SeriesToJson& series_json) {
+Json scene_json(const SceneReport& scene, const LinesToJson& lines_json) {
   const Check* worst = worst_check(scene);
   const Check* bullets = worst == nullptr ? nullptr : bullets_counterpart(scene, *worst);
   Json result = {{"name", scene.name},
@@ -107,7 +114,7 @@ Json scene_json(const SceneReport& scene, const SeriesToJson& series_json) {
                  {"plots", Json::array()},
                  {"tables", Json::array()}};
   for (const Check& check : scene.checks) result["checks"].push_back(check_json(check));
-  for (const Plot& plot : scene.plots) result["plots"].push_back(plot_json(plot, series_json));
+  for (const Plot& plot : scene.plots) result["plots"].push_back(plot_json(plot, lines_json));
   for (const Table& table : scene.tables) result["tables"].push_back(table_json(table));
   return result;
 }
@@ -123,13 +130,13 @@ Json summary_json(const Report& report) {
   return result;
 }
 
-std::string dump(const Report& report, const SeriesToJson& series_json) {
+std::string dump(const Report& report, const LinesToJson& lines_json) {
   Json result = {{"schema", "signorini-report"},    {"schema_version", Report::kSchemaVersion},
                  {"command", report.command},       {"version", report.version},
                  {"engines", report.engines},       {"partial", report.partial},
                  {"summary", summary_json(report)}, {"scenes", Json::array()}};
   for (const SceneReport& scene : report.scenes) {
-    result["scenes"].push_back(scene_json(scene, series_json));
+    result["scenes"].push_back(scene_json(scene, lines_json));
   }
   return result.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -137,12 +144,12 @@ std::string dump(const Report& report, const SeriesToJson& series_json) {
 }  // namespace
 
 std::string report_json(const Report& report) {
-  return dump(report, whole_series) + "\n";
+  return dump(report, whole_lines) + "\n";
 }
 
 std::string report_page_json(const Report& report) {
   std::string result;
-  for (const char character : dump(report, page_series)) {
+  for (const char character : dump(report, page_lines)) {
     if (character == '<') {
       result += "\\u003c";
     } else {

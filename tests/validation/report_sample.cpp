@@ -1,4 +1,4 @@
-// report_sample FOLDER [partial]: writes the report of sample_report.h into a folder, for the tests
+// report_sample FOLDER: writes the report of sample_report.h into a folder, for the tests
 // of the page.
 #include <signorini/validation/report.h>
 
@@ -9,13 +9,12 @@
 #include <string>
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
-    std::fprintf(stderr, "usage: report_sample FOLDER [partial]\n");
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: report_sample FOLDER\n");
     return 64;
   }
   try {
-    signorini::validation::Report report = signorini::validation::sample_report();
-    report.partial = argc > 2 && std::string(argv[2]) == "partial";
+    const signorini::validation::Report report = signorini::validation::sample_report();
     for (const std::string& file : signorini::validation::write_report(report, argv[1])) {
       std::printf("%s\n", file.c_str());
     }

@@ -14,7 +14,7 @@ export function formatNumber(value: number, digits = 3): string {
 }
 
 export function withUnit(text: string, unit: string): string {
-  return unit === '' || unit === '1' ? text : `${text} ${unit}`;
+  return unit === '' || unit === '1' || text === 'NaN' ? text : `${text} ${unit}`;
 }
 
 /** Seconds with the prefix that suits them; null is an engine that was not run. */
@@ -35,7 +35,7 @@ export function formatRatio(ratio: number): string {
 /** 1e-12 as 10⁻¹². The value is a power of ten up to rounding. */
 export function formatDecade(value: number): string {
   const exponent = Math.round(Math.log10(value));
-  if (exponent >= -2 && exponent <= 3) return String(Number(value.toPrecision(1)));
+  if (exponent === 0 || exponent === 1) return exponent === 0 ? '1' : '10';
   const digits = [...String(Math.abs(exponent))].map((digit) => kSuperscripts[Number(digit)]);
   return `10${exponent < 0 ? '⁻' : ''}${digits.join('')}`;
 }

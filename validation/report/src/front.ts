@@ -21,7 +21,7 @@ export function headline(report: Report): string {
 /** The problem in one line. */
 export function equation(): HTMLElement {
   return h('p', { class: 'equation' },
-    h('span', { class: 'formula', 'aria-label': '0 at most f, perpendicular to d at least 0' },
+    h('span', { class: 'formula', role: 'math', 'aria-label': '0 at most f, perpendicular to d at least 0' },
       '0 ≤ ', h('i', {}, 'f'), '  ⊥  ', h('i', {}, 'd'), ' ≥ 0'),
     h('span', { class: 'meaning' },
       'At each contact the force only pushes, the gap does not close, and one of the two is zero.'));
@@ -33,17 +33,21 @@ export function partialBanner(report: Report): HTMLElement | null {
     h('strong', {}, 'Partial report. '), 'The run was interrupted: scenes are missing.');
 }
 
+/** An error as the tolerance measures it: relative ones have no unit. */
+export function errorText(check: Check): string {
+  return withUnit(formatNumber(check.error), check.error_kind === 'relative' ? '' : check.unit);
+}
+
 function errorCell(check: Check | null): HTMLElement {
   if (check === null) return h('td', { class: 'number' }, h('span', { class: 'none' }, 'no check'));
-  const error = withUnit(formatNumber(check.error), check.error_kind === 'relative' ? '' : check.unit);
   const owed = check.verdict === 'information'
     ? 'not judged' : `tolerance ${formatNumber(check.tolerance)}`;
-  return h('td', { class: 'number' }, error, h('small', {}, owed));
+  return h('td', { class: 'number' }, errorText(check), h('small', {}, owed));
 }
 
 function bulletCell(check: Check | null): HTMLElement {
   const text: Child = check === null ? h('span', { class: 'none', title: 'no such check' }, '–')
-    : withUnit(formatNumber(check.error), check.error_kind === 'relative' ? '' : check.unit);
+    : errorText(check);
   return h('td', { class: 'number' }, text);
 }
 
@@ -82,7 +86,7 @@ const kColumns: { key: SortKey | null; title: string; classes: string }[] = [
   { key: 'verdict', title: 'Verdict', classes: '' },
   { key: 'scene', title: 'Scene', classes: '' },
   { key: null, title: 'Worst check', classes: '' },
-  { key: 'ratio', title: 'Error', classes: 'number' },
+  { key: null, title: 'Error', classes: 'number' },
   { key: 'bullet', title: "Bullet's error", classes: 'number' },
   { key: 'ratio', title: 'Error / tolerance', classes: 'track-cell' },
 ];

@@ -7,7 +7,7 @@ import type { Verdict } from './report';
 const kIcons: Record<Verdict, string> = {
   fail: 'M3.2 3.2 12.8 12.8M12.8 3.2 3.2 12.8',
   pass: 'M2.5 8.5 6.3 12.3 13.5 4.2',
-  information: 'M8 7v6M8 3.2v.6',
+  information: 'M8 14.5A6.5 6.5 0 1 0 8 1.5a6.5 6.5 0 0 0 0 13M8 7.4v3.8M8 4.6v.2',
 };
 
 const kWords: Record<Verdict, string> = { fail: 'fail', pass: 'pass', information: 'info' };
@@ -71,7 +71,7 @@ export function trackAxis(): HTMLElement {
 export function trackLegend(): HTMLElement {
   return h('p', { class: 'legend' },
     h('span', { class: 'key' }, h('span', { class: 'mark signorini' }), 'Signorini'),
-    h('span', { class: 'key' }, h('span', { class: 'mark bullet' }), 'Bullet, same check, same tolerance'),
-    h('span', { class: 'key' }, h('span', { class: 'tolerance-key' }), 'the tolerance; the hatched side is too far off'),
-    h('span', { class: 'key' }, h('span', { class: 'mark signorini above' }), 'beyond the axis (0 to the left, NaN to the right)'));
+    h('span', { class: 'key' }, h('span', { class: 'mark bullet' }), 'Bullet, same check'),
+    h('span', { class: 'key' }, h('span', { class: 'tolerance-key' }), 'tolerance, and beyond it'),
+    h('span', { class: 'key' }, h('span', { class: 'mark signorini above' }), 'off the axis (0, or NaN and ∞)'));
 }

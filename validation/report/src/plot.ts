@@ -5,24 +5,23 @@ import { h } from './dom';
 import { formatDecade, formatNumber, formatTicks } from './format';
 import { isDark, lineStyle } from './palette';
 import {
-  drawable, lineName, linearLimits, logLimits, merged, plotNotes, rangeOf,
+  drawable, lineName, linearLimits, logLimits, merged, plotNotes, rangeOf, valueAt,
 } from './plot_data';
 import type { Column } from './plot_data';
 import type { Plot, Series } from './report';
 
 const kHeight = 250;
-const kPrintSize = { width: 335, height: 210 };
+const kPrintSize = { width: 335, height: 165 };
 const kFont = '12px system-ui, sans-serif';
 
 function cssColour(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }
 
-/** The row nearest to a position at which this line has a point. */
+/** The row nearest to a position at which this line has a point, or a gap. */
 function nearestPoint(column: Column, row: number): number {
   for (let away = 0; away < column.length; ++away) {
     for (const at of [row - away, row + away]) {
-      if (column[at] === null) return at;
       if (column[at] !== undefined) return at;
     }
   }
@@ -41,14 +40,15 @@ function axes(plot: Plot): uPlot.Axis[] {
   const linear: uPlot.Axis.DynamicValues = (_, ticks) =>
     formatTicks(ticks, Math.abs((ticks[1] ?? 1) - (ticks[0] ?? 0)) || 1);
   const decades: uPlot.Axis.DynamicValues = (_, ticks) =>
-    ticks.map((tick) => (tick === null ? '' : formatDecade(tick)));
+    ticks.map(formatDecade);
   return [
-    { ...common, label: plot.x_label, size: 34, values: linear },
+    { ...common, label: plot.x_label, size: 28, values: linear },
     {
       ...common,
       label: plot.y_label,
       size: (_, labels) => 16 + 7 * Math.max(3, ...(labels ?? []).map((label) => label.length)),
-      ...(plot.log_y ? { values: decades, splits: decadeSplits } : { values: linear }),
+      ...(plot.log_y ? { values: decades, splits: decadeSplits, filter: (_, splits) => splits }
+        : { values: linear }),
     },
   ];
 }
@@ -81,6 +81,18 @@ function inDrawingOrder(lines: readonly Series[]): DrawnLine[] {
   return [...drawn.filter(isReference), ...drawn.filter((one) => !isReference(one))];
 }
 
+/** What the legend shows of a line under the cursor: nothing while there is none. */
+const lineValue: uPlot.Series.Value = (chart, _value, series) => {
+  const row = chart.cursor.idx;
+  if (row === null || row === undefined) return '';
+  const found = valueAt(chart.data[0] as number[], chart.data[series] as Column, row);
+  if (found === null) return '–';
+  return `${found.isPoint ? '' : '≈ '}${formatNumber(found.value, 5)}`;
+};
+
+const xValue: uPlot.Series.Value = (_, value: number | null) =>
+  (value === null ? '' : formatNumber(value, 5));
+
 function seriesOptions({ line, rank }: DrawnLine): uPlot.Series {
   const style = lineStyle(line.engine, rank, false);
   return {
@@ -89,7 +101,7 @@ function seriesOptions({ line, rank }: DrawnLine): uPlot.Series {
     width: style.width,
     dash: style.dash,
     points: { show: line.x.length < 2 },
-    value: (_, value) => (value === null || value === undefined ? '–' : formatNumber(value, 5)),
+    value: lineValue,
   };
 }
 
@@ -185,8 +197,7 @@ export function plotView(plot: Plot): PlotView {
           y: { distr: plot.log_y ? 3 : 1, range: () => yLimits },
         },
         axes: axes(plot),
-        series: [{ label: plot.x_label, value: (_, value) => (value === null ? '–' : formatNumber(value, 5)) },
-          ...lines.map(seriesOptions)],
+        series: [{ label: plot.x_label, value: xValue }, ...lines.map(seriesOptions)],
         legend: { markers: { width: 0 } },
         cursor: {
           sync: { key: syncKey, scales: ['x', null] },

@@ -75,6 +75,27 @@ export function logLimits(low: number, high: number): [number, number] {
   return [10 ** bottom, 10 ** Math.max(top, bottom + 1)];
 }
 
+/** The value of a line at a row: its point there, or on the line between its neighbours. */
+export interface ValueAt {
+  value: number;
+  isPoint: boolean;
+}
+
+/** null where the line has a gap or has ended. */
+export function valueAt(x: readonly number[], column: Column, row: number): ValueAt | null {
+  const here = column[row];
+  if (here !== undefined) return here === null ? null : { value: here, isPoint: true };
+  let left = row;
+  let right = row;
+  while (left >= 0 && column[left] === undefined) left -= 1;
+  while (right < column.length && column[right] === undefined) right += 1;
+  const [y0, y1, x0, x1] = [column[left], column[right], x[left], x[right]];
+  if (typeof y0 !== 'number' || typeof y1 !== 'number') return null;
+  if (x0 === undefined || x1 === undefined || x1 <= x0) return null;
+  const part = ((x[row] ?? x0) - x0) / (x1 - x0);
+  return { value: y0 + part * (y1 - y0), isPoint: false };
+}
+
 /** What a reader of the plot must know and cannot see. */
 export function plotNotes(plot: Plot): string[] {
   const notes: string[] = [];

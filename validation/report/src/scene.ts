@@ -1,6 +1,7 @@
 // The page of one scene.
 
 import { h } from './dom';
+import { errorText } from './front';
 import { formatDuration, formatNumber, withUnit } from './format';
 import { ratioTrack, trackAxis, trackLegend, verdictChip } from './marks';
 import { plotView } from './plot';
@@ -25,7 +26,7 @@ function checkRow(check: Check, group: CheckGroup): HTMLElement {
     h('td', {}, verdictChip(check.verdict)),
     h('td', {}, engineName(check.engine)),
     exact(check.value), exact(check.expected),
-    h('td', { class: 'number', title: String(check.error) }, formatNumber(check.error),
+    h('td', { class: 'number', title: String(check.error) }, errorText(check),
       h('small', {}, check.error_kind)),
     h('td', { class: 'number' }, check.verdict === 'information'
       ? h('span', { class: 'none', title: 'not judged' }, '–') : formatNumber(check.tolerance)),

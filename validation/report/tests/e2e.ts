@@ -2,7 +2,7 @@
 // from the disk as a reader would, and leaves pictures of it in the folder.
 
 import assert from 'node:assert/strict';
-import { mkdirSync } from 'node:fs';
+import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import process from 'node:process';
 import { pathToFileURL } from 'node:url';
@@ -14,10 +14,11 @@ if (!browserPath || !reportPath || !pictures) {
   console.error('usage: node e2e.mjs CHROMIUM REPORT.html FOLDER');
   process.exit(64);
 }
-const reportUrl = pathToFileURL(reportPath).href;
 mkdirSync(pictures, { recursive: true });
 
 interface View {
+  /** Another file than the sample report. */
+  file?: string;
   width: number;
   dark?: boolean;
 }
@@ -28,6 +29,7 @@ async function withPage(browser: Browser, view: View, use: (page: Page) => Promi
     viewport: { width: view.width, height: 900 }, colorScheme: view.dark ? 'dark' : 'light',
   });
   const page = await context.newPage();
+  const reportUrl = pathToFileURL(view.file ?? (reportPath as string)).href;
   const complaints: string[] = [];
   page.on('console', (message) => {
     if (message.type() === 'error' || message.type() === 'warning') complaints.push(message.text());
@@ -169,6 +171,24 @@ async function darkAndNarrow(page: Page): Promise<void> {
   await picture(page, `scene-${page.viewportSize()?.width}-dark`);
 }
 
+/** A copy of the sample report with one piece of its data changed. */
+function changed(name: string, from: string, to: string): string {
+  const parts = readFileSync(reportPath as string, 'utf8').split(from);
+  assert.equal(parts.length, 2, `${from} stands in the report ${parts.length - 1} times`);
+  const file = join(pictures as string, name);
+  writeFileSync(file, parts.join(to));
+  return file;
+}
+
+async function partial(page: Page): Promise<void> {
+  assert.match(await page.getByRole('alert').innerText(), /Partial report/);
+  await picture(page, 'front-partial');
+}
+
+async function otherSchema(page: Page): Promise<void> {
+  assert.match(await page.locator('main').innerText(), /schema version 99, this page reads 1/);
+}
+
 const steps: [string, View, (page: Page) => Promise<void>][] = [
   ['front page, filter, sort', { width: 1280 }, frontPage],
   ['scene page, plots, shared cursor', { width: 1280 }, scenePage],
@@ -177,6 +197,9 @@ const steps: [string, View, (page: Page) => Promise<void>][] = [
   ['plots of many lines', { width: 1280 }, manyLines],
   ['all scenes on one page, as PDF', { width: 1280 }, everythingInOne],
   ['print', { width: 1280 }, printed],
+  ['a partial report says so', { width: 1080, file: changed('partial.html', '"partial":false', '"partial":true') }, partial],
+  ['data of another version are refused',
+    { width: 1080, file: changed('version.html', '"schema_version":1', '"schema_version":99') }, otherSchema],
   ['dark and wide', { width: 1600, dark: true }, darkAndNarrow],
   ['dark and narrow', { width: 800, dark: true }, darkAndNarrow],
 ];

@@ -22,9 +22,10 @@ test('what is no number says so', () => {
   assert.equal(formatRatio(Infinity), '∞');
 });
 
-test('the unit "1" is not written', () => {
+test('neither the unit "1" nor a unit of NaN is written', () => {
   assert.equal(withUnit('5', 'm'), '5 m');
   assert.equal(withUnit('5', '1'), '5');
+  assert.equal(withUnit('NaN', 'm'), 'NaN');
 });
 
 test('durations have the prefix that suits them, and not run is no number', () => {
@@ -38,8 +39,9 @@ test('durations have the prefix that suits them, and not run is no number', () =
 test('decades are powers of ten', () => {
   assert.equal(formatDecade(1e-12), '10⁻¹²');
   assert.equal(formatDecade(1e6), '10⁶');
-  assert.equal(formatDecade(0.1), '0.1');
-  assert.equal(formatDecade(100), '100');
+  assert.equal(formatDecade(0.1), '10⁻¹');
+  assert.equal(formatDecade(1), '1');
+  assert.equal(formatDecade(10), '10');
 });
 
 test('ticks have the decimals that tell them apart', () => {

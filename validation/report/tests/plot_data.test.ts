@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import {
-  drawable, linearLimits, logLimits, merged, plotNotes, rangeOf,
+  drawable, linearLimits, logLimits, merged, plotNotes, rangeOf, valueAt,
 } from '../src/plot_data';
 import type { Plot } from '../src/report';
 
@@ -25,6 +25,17 @@ test('a jump keeps both of its points', () => {
   assert.deepEqual(x, [0, 1, 1, 2]);
   assert.deepEqual(columns[0], [0, 1, 5, 5]);
   assert.deepEqual(columns[1], [undefined, 7, undefined, undefined]);
+});
+
+test('a value between two points of a line is interpolated and says so', () => {
+  const x = [0, 1, 2, 3, 4];
+  const column = [10, undefined, 20, undefined, null];
+  assert.deepEqual(valueAt(x, column, 0), { value: 10, isPoint: true });
+  assert.deepEqual(valueAt(x, column, 1), { value: 15, isPoint: false });
+  assert.equal(valueAt(x, column, 3), null);
+  assert.equal(valueAt(x, column, 4), null);
+  assert.equal(valueAt(x, [undefined, 1, undefined], 0), null);
+  assert.equal(valueAt(x, [undefined, 1, undefined], 2), null);
 });
 
 test('nothing to merge is an empty table', () => {
