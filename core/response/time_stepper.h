@@ -3,26 +3,33 @@
 #include <signorini/core/model/body.h>
 #include <signorini/core/model/contact_finder.h>
 #include <signorini/core/model/unconstrained_motion.h>
+#include <signorini/core/response/friction_pyramid.h>
 #include <signorini/lcp/result.h>
 #include <signorini/lcp/solver.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace signorini {
 
 struct TimeStepSettings {
-  double step = 1.0 / 240.0;             ///< h, s, > 0
-  Vec3 gravity = Vec3(0.0, 0.0, -9.81);  ///< m/s^2
+  double step = 1.0 / 240.0;             ///< h, s, finite and > 0
+  Vec3 gravity = Vec3(0.0, 0.0, -9.81);  ///< m/s^2, finite
   OrientationScheme orientation = OrientationScheme::kQuaternion;
+  /// Of the bodies that no contact row touches in the step. The others always move with their
+  /// velocity after the impulses (semi-implicit): that is what the contact rows speak about.
   Integrator integrator = Integrator::kSemiImplicit;
   /// Sides k of the friction pyramid, even, >= 4. More sides: closer to the cone, k rows a contact.
   int pyramid_sides = 8;
-  /// Contacts closer than this are in the LCP, with gap/h as their allowance; m, >= 0.
+  /// Contacts closer than this are in the LCP, with gap/h as their allowance; m, finite and >= 0.
+  /// A pair that is farther apart and closes more than this in one step is first seen overlapping.
   double margin = 0.01;
-  /// Restitution acts at touching contacts that approach faster than this; m/s, >= 0.
+  /// Contacts with gap at most this are touching: restitution acts there; m, finite and >= 0.
+  double touching_tolerance = 1e-6;
+  /// Restitution acts at touching contacts that approach faster than this; m/s, finite and >= 0.
   double restitution_threshold = 0.0;
-  std::string solver = "lemke";
+  std::string solver = "lemke";  ///< a name that lcp::make_solver() knows
   lcp::SolverSettings lcp = {.tolerance = 1e-9};
 
   /// @throws std::invalid_argument naming field, value and bound.
@@ -33,39 +40,83 @@ struct TimeStepSettings {
 struct StepReport {
   lcp::Status status = lcp::Status::kNotRun;  ///< of the velocity problem
   ContactSet contacts;                        ///< those in the problem
-  lcp::Vector normal_impulses;                ///< N s
+  lcp::Vector normal_impulses;                ///< N s, one for each of `contacts`
   std::vector<Vec3> impulses;                 ///< whole contact impulses on A, world, N s
-  double kinetic_energy = 0.0;                ///< after the step, J
-  double potential_energy = 0.0;              ///< J
-  double energy_change_impact = 0.0;          ///< kinetic energy change by the contact impulses, J
-  double energy_change_projection = 0.0;  ///< potential energy change by the position projection, J
+  /// Contacts found but left out of the problem: apart, with restitution, and approaching fast.
+  int contacts_left_out = 0;
+  double kinetic_energy = 0.0;        ///< after the step, J
+  double potential_energy = 0.0;      ///< after the step, J
+  double energy_change_impact = 0.0;  ///< kinetic energy change by the contact impulses (what
+                                      ///< driven bodies did through them included), J
+  /// Energy change by the position projection: potential, and kinetic where turning a body changes
+  /// J with L fixed; J.
+  double energy_change_projection = 0.0;
   double deepest_overlap = 0.0;  ///< max(0, -gap) over the contacts at the start of the step, m
-  lcp::Result result;
+  lcp::Status projection_status = lcp::Status::kNotRun;  ///< kNotRun: nothing to project
+  lcp::Result result;  ///< of the velocity problem; solver "closed form" for one contact without
+                       ///< friction
   std::string detail;  ///< one line: anything beyond the plain scheme
 };
+
+/// After the impulses, a contact slower than this (m/s) neither leaves nor approaches.
+inline constexpr double kRestingSpeed = 1e-6;
 
 /// Velocity-level time stepping with Coulomb friction as a k-sided pyramid (Stewart and Trinkle
 /// 1996; Anitescu and Potra 1997), all contacts in one LCP:
 ///
 ///     M (v+ - v-) = h F + J_n^T f_n + J_t^T beta
-///     0 <= f_n  ⊥ J_n v+ + gap/h (gap > 0 only) + e d'- (touching, colliding) >= 0
+///     0 <= f_n  ⊥ J_n v+ + allowance >= 0
 ///     0 <= beta ⊥ J_t v+ + E lambda >= 0
 ///     0 <= lambda ⊥ mu f_n - E^T beta >= 0
 ///
-/// then x, q move with v+. Overlap is removed by a position projection that leaves p and L alone.
+/// with the masses and the contacts of the step's start. In turn:
+///
+/// 1. Find the contacts with gap <= margin. v* = v- + h M^-1 F in momenta: p* = p + h m g, L* = L,
+///    w* = J^-1 L*. Torque-free rotation keeps L exactly; the gyroscopic effect comes from the new
+///    orientation in the next w.
+/// 2. allowance = e d'- (d'- from v-, not v*, so that a resting contact does not bounce) where gap
+///    <= touching_tolerance and d'- < -restitution_threshold; else max(gap, 0)/h. Overlap is not
+///    pushed out in the velocities. A contact that is apart, has e > 0 and would be caught by
+///    gap/h would lose its speed before it touches. It is left out and bounces in the next step, if
+///    it approaches faster than restitution_threshold and than the forces make it in one step
+///    (below that it cannot be told from a resting one, and is caught). A bounce then starts up to
+///    h |d'-| deep.
+/// 3. Solve, apply the impulses (driven and fixed bodies take none), move x and q with v+. Without
+///    contacts the problem is empty; one contact without friction is solved in closed form, f =
+///    max(0, -(d'* + allowance)/A), and certified like any other.
+/// 4. Project overlapping positions (position_projection.h). Contacts that leave faster than
+///    kRestingSpeed are not projected, nor those with restitution that approach faster than
+///    kRestingSpeed and restitution_threshold: a ball that bounces leaves by itself, and lifting it
+///    would give it energy.
+///
+/// With e = 0 the impulses never add kinetic energy unless a body is driven: T+ - T* =
+/// f.d'+ + beta.u_t+ - 1/2 |J^T (f, beta)|^2_W, and at a solution f.d'+ = -f.allowance <= 0,
+/// beta.u_t+ = -lambda mu f <= 0. With e > 0 in several contacts at once they can (Newton's law).
 class TimeStepper {
  public:
-  /// @param finder is asked for contacts; must outlive the stepper
+  /// @param finder is asked for contacts, twice a step; must outlive the stepper
   /// @throws std::invalid_argument for bad bodies or settings
   TimeStepper(Bodies bodies, ContactFinder& finder, const TimeStepSettings& settings);
 
   /// One step. If the velocity problem is not solved, the best iterate is applied and report.status
-  /// says so: the caller decides whether to go on.
+  /// says so: the caller decides whether to go on. A best iterate that is not finite is not applied
+  /// (report.detail says so).
+  /// @throws std::invalid_argument for a bad state, for contacts that validate() refuses or of
+  /// which no body is dynamic, or if the solver refuses this kind of problem; state is then
+  /// unchanged
   void step(State& state, StepReport& report);
 
   [[nodiscard]] const Bodies& bodies() const { return bodies_; }
+  [[nodiscard]] const TimeStepSettings& settings() const { return settings_; }
 
  private:
+  [[nodiscard]] State with_forces_applied(const State& start) const;
+  void find(const State& state, ContactSet& contacts);
+  void solve(const PyramidProblem& pyramid, lcp::Result& result);
+  void apply(const PyramidProblem& pyramid, State& state, StepReport& report) const;
+  void move(const State& start, const ContactSet& contacts, State& state) const;
+  void project(State& state, StepReport& report);
+
   Bodies bodies_;
   ContactFinder& finder_;
   TimeStepSettings settings_;
