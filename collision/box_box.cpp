@@ -13,7 +13,7 @@ namespace {
 /// the best axis before the nearest features are no longer a face's or two edges'.
 constexpr double kCornerTolerance = 1e-9;
 /// Edges within this angle (radians) of parallel touch along a line, not in a point.
-constexpr double kParallelEdges = 1e-6;
+constexpr double kParallelEdges = 1e-7;
 
 Contact between(const Vec3& point_a, const Vec3& point_b, const Vec3& normal, double gap,
                 const BoxSides& sides_a, const BoxSides& sides_b, NormalOwner owner) {
@@ -34,9 +34,11 @@ void find_on_face(const PlacedBox& a, const PlacedBox& b, const BoxAxis& axis, d
 
   const ClippedPolygon polygon = clip_face(incident, face_against(incident, outward), reference,
                                            face, preference_tolerance(a, b));
+  // Rounding of the heights must not lose the one contact of boxes that are margin apart.
+  const double highest = std::max(margin, polygon.lowest_height());
   for (int k = 0; k < polygon.count; ++k) {
     const ClippedPoint& point = polygon.points[k];
-    if (point.height > margin) {
+    if (point.height > highest) {
       continue;
     }
     Vec3 local;
@@ -72,12 +74,14 @@ Contact edge_contact(const PlacedBox& a, const PlacedBox& b, const BoxAxis& axis
   const Vec3 u = a.axes.col(axis.axis_a);
   const Vec3 v = b.axes.col(axis.axis_b);
   const Vec3 offset = b.at(sides_b) - a.at(sides_a);
-  const double cosine = u.dot(v);
-  const double sine_squared = u.cross(v).squaredNorm();
   const double half_a = a.half[axis.axis_a];
   const double half_b = b.half[axis.axis_b];
-  const double s = std::clamp((u - cosine * v).dot(offset) / sine_squared, -half_a, half_a);
-  const double t = std::clamp((cosine * u - v).dot(offset) / sine_squared, -half_b, half_b);
+  // Along the lines; where rounding puts the crossing beyond an end, the nearest points within the
+  // edges are those of that end.
+  const double crossing = (u - u.dot(v) * v).dot(offset) / u.cross(v).squaredNorm();
+  const double t =
+      std::clamp(v.dot(std::clamp(crossing, -half_a, half_a) * u - offset), -half_b, half_b);
+  const double s = std::clamp(u.dot(offset + t * v), -half_a, half_a);
   const Vec3 middle = 0.5 * (a.at(sides_a) + s * u + b.at(sides_b) + t * v);
   const Vec3 half_gap = 0.5 * axis.separation * N;
   Contact contact = between(middle + half_gap, middle - half_gap, N, axis.separation, sides_a,
@@ -188,8 +192,10 @@ void find(const Box& a, const Pose& pose_a, const Box& b, const Pose& pose_b, do
   if (found.separation > margin) {
     return;
   }
-  if (found.separation > 0.0) {
-    const BoxNearest nearest = nearest_points(box_a, box_b);
+  const bool apart = found.separation > 0.0;
+  BoxNearest nearest;
+  if (apart) {
+    nearest = nearest_points(box_a, box_b);
     if (nearest.distance > margin) {
       return;
     }
@@ -201,8 +207,12 @@ void find(const Box& a, const Pose& pose_a, const Box& b, const Pose& pose_b, do
   }
   if (found.preferred.kind == BoxAxis::Kind::kEdges) {
     contacts.push_back(edge_contact(box_a, box_b, found.preferred));
-  } else {
-    find_on_face(box_a, box_b, found.preferred, margin, contacts);
+    return;
+  }
+  find_on_face(box_a, box_b, found.preferred, margin, contacts);
+  if (contacts.empty() && apart) {
+    // Beside the face by little of the distance, yet by more than the clipping's slack.
+    find_at_corners(box_a, box_b, nearest, margin, contacts);
   }
 }
 

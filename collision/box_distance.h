@@ -7,8 +7,8 @@ namespace signorini::collision {
 /// The nearest points of two boxes that are apart, and the features they lie on.
 struct BoxNearest {
   double distance = 0.0;  ///< m
-  Vec3 point_a;
-  Vec3 point_b;
+  Vec3 point_a = Vec3::Zero();
+  Vec3 point_b = Vec3::Zero();
   BoxSides sides_a{0, 0, 0};
   BoxSides sides_b{0, 0, 0};
 };

@@ -77,7 +77,9 @@ BoxSeparation separate(const PlacedBox& a, const PlacedBox& b) {
   double largest = kNone;
   for_each_axis(a, b, [&](const BoxAxis& axis) {
     BoxAxis& best_of_kind = best[static_cast<int>(axis.kind)];
-    if (axis.separation > best_of_kind.separation + tolerance) {
+    // Of faces the first may stay, as clipping finds the points of any; edges cross in one point.
+    const double better = axis.kind == Kind::kEdges ? 0.0 : tolerance;
+    if (axis.separation > best_of_kind.separation + better) {
       best_of_kind = axis;
     }
     largest = std::max(largest, axis.separation);

@@ -1,6 +1,8 @@
 #include <signorini/collision/box_geometry.h>
 #include <signorini/collision/half_space_pairs.h>
 
+#include <algorithm>
+#include <array>
 #include <limits>
 
 namespace signorini::collision::narrow {
@@ -10,11 +12,28 @@ Vec3 plane_normal(const Pose& pose) {
   return pose.orientation * Vec3::UnitZ();
 }
 
+/// The corners of the face of the box that faces the plane most, one of which is the lowest.
+struct LowFace {
+  Vec3 n;  ///< of the plane
+  std::array<BoxSides, 4> corners;
+  std::array<Vec3, 4> points;
+  std::array<double, 4> gaps;
+
+  LowFace(const Box& a, const Pose& pose_a, const Pose& plane) : n(plane_normal(plane)) {
+    const PlacedBox box(a, pose_a);
+    corners = face_corners(face_against(box, n));
+    for (int k = 0; k < 4; ++k) {
+      points[k] = box.at(corners[k]);
+      gaps[k] = n.dot(points[k] - plane.position);
+    }
+  }
+};
+
 }  // namespace
 
 double distance(const Box& a, const Pose& pose_a, const HalfSpace&, const Pose& pose_b) {
-  const Vec3 n = plane_normal(pose_b);
-  return n.dot(pose_a.position - pose_b.position) - PlacedBox(a, pose_a).support(n);
+  const LowFace face(a, pose_a, pose_b);
+  return *std::min_element(face.gaps.begin(), face.gaps.end());
 }
 
 bool test(const Box& a, const Pose& pose_a, const HalfSpace& b, const Pose& pose_b) {
@@ -23,14 +42,13 @@ bool test(const Box& a, const Pose& pose_a, const HalfSpace& b, const Pose& pose
 
 void find(const Box& a, const Pose& pose_a, const HalfSpace&, const Pose& pose_b, double margin,
           std::vector<Contact>& contacts) {
-  const Vec3 n = plane_normal(pose_b);
-  const PlacedBox box(a, pose_a);
-  for (const BoxSides& corner : face_corners(face_against(box, n))) {
-    const Vec3 point = box.at(corner);
-    const double gap = n.dot(point - pose_b.position);
+  const LowFace face(a, pose_a, pose_b);
+  for (int k = 0; k < 4; ++k) {
+    const double gap = face.gaps[k];
     if (gap <= margin) {
-      Contact contact = make_contact(point, point - gap * n, n, gap,
-                                     feature_pair_id(box_feature(corner), 0), NormalOwner::kFaceB);
+      Contact contact =
+          make_contact(face.points[k], face.points[k] - gap * face.n, face.n, gap,
+                       feature_pair_id(box_feature(face.corners[k]), 0), NormalOwner::kFaceB);
       contact.surface_a = LocalSurface::vertex();
       contact.surface_b = LocalSurface::face();
       contacts.push_back(contact);

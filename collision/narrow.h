@@ -6,7 +6,7 @@
 //
 //   bool   test(a, pose_a, b, pose_b);
 //   double distance(a, pose_a, b, pose_b);
-//   void   find(a, pose_a, b, pose_b, margin, contacts);   // appends
+//   void   find(a, pose_a, b, pose_b, margin, contacts);   // contacts comes empty
 
 #include <signorini/collision/feature_id.h>
 #include <signorini/collision/shape.h>

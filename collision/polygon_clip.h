@@ -2,7 +2,9 @@
 
 #include <signorini/collision/box_geometry.h>
 
+#include <algorithm>
 #include <array>
+#include <limits>
 
 namespace signorini::collision {
 
@@ -20,6 +22,15 @@ struct ClippedPoint {
 struct ClippedPolygon {
   std::array<ClippedPoint, 8> points;
   int count = 0;
+
+  /// +infinity if there are no points.
+  [[nodiscard]] double lowest_height() const {
+    double lowest = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < count; ++k) {
+      lowest = std::min(lowest, points[k].height);
+    }
+    return lowest;
+  }
 };
 
 /// The incident face clipped against the prism over the reference face (Sutherland and Hodgman

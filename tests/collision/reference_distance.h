@@ -1,0 +1,17 @@
+#pragma once
+
+#include <signorini/collision/shape.h>
+
+namespace signorini::collision::testing {
+
+/// The distance of two boxes, independent of the library's: the quadratic programme
+/// min |c_A + A x - c_B - B y|, |x| <= half_A, |y| <= half_B by projected gradients with Nesterov's
+/// acceleration (convex: every end is the minimum). Near 0 if they overlap. Never too small; too
+/// large by about 1e-6 of the larger box at most.
+double reference_box_distance(const Box& a, const Pose& pose_a, const Box& b, const Pose& pose_b);
+
+/// The least translation that parts two overlapping boxes: the least distance from the origin to a
+/// plane through three of the 64 differences of vertices that has all others on one side. Slow.
+double reference_box_depth(const Box& a, const Pose& pose_a, const Box& b, const Pose& pose_b);
+
+}  // namespace signorini::collision::testing
