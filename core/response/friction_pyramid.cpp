@@ -97,7 +97,7 @@ lcp::SparseMatrix expand(const lcp::SparseMatrix& A, const ContactSet& contacts,
     for (int j = 0; j < sides; ++j) {
       const int beta = normals + sides * c + j;
       entries.emplace_back(lambda, beta, -scale);
-      entries.emplace_back(beta, lambda, scale);
+      entries.emplace_back(beta, lambda, 1.0);
     }
   }
   const int size = normals + (sides + 1) * m;

@@ -24,20 +24,25 @@ inline constexpr double kAligningSlip = 1e-9;
 /// @param normal N, unit. @param slip any vector; its tangential part counts, m/s
 [[nodiscard]] TangentFrame tangent_frame(const Vec3& normal, const Vec3& slip);
 
-/// The velocity-level contact LCP with friction as a k-sided pyramid (Stewart and Trinkle 1996, eq.
-/// (18); Anitescu and Potra 1997, eq. (13)). For n contacts, m of which have mu > 0:
+/// The velocity-level contact LCP with friction as a k-sided pyramid (Stewart and Trinkle, An
+/// implicit time-stepping scheme for rigid body dynamics with inelastic collisions and Coulomb
+/// friction, 1996; Anitescu and Potra, Formulating dynamic multi-rigid-body contact problems with
+/// friction as solvable linear complementarity problems, 1997). For n contacts, m of which have
+/// mu > 0:
 ///
 ///     z = [f (n), beta (k m), lambda (m)]
 ///
-///         | A_nn   A_nt   0   |        | d'* + allowance |    d'+ + allowance
-///     M = | A_tn   A_tt   S E |    q = | D u_t*          |    D u_t+ + E lambda~
-///         | S mu  -S E^T  0   |        | 0               |    S (mu f - E^T beta)
+///         | A_nn   A_nt   0 |        | d'* + allowance |    d'+ + allowance
+///     M = | A_tn   A_tt   E |    q = | D u_t*          |    D u_t+ + E lambda
+///         | S mu  -S E^T  0 |        | 0               |    S (mu f - E^T beta)
 ///
-/// beta_ij is the impulse along direction j of contact i, t1 cos(2 pi j/k) + t2 sin(2 pi j/k);
-/// u* the velocities without contact impulses. A is over normals and directions. S = diag(A_nn)
-/// and lambda = S lambda~ (Stewart and Trinkle: S = I): z is in N s (lambda~: kg m/s), w in m/s,
-/// throughout. M is copositive: z^T M z = |J^T (f, beta)|^2_W + lambda~^T S mu f. Without friction
-/// z = f and M is left factored, symmetric positive semidefinite.
+/// beta_ij is the impulse along direction j of contact i, t1 cos(2 pi j/k) + t2 sin(2 pi j/k),
+/// D u_t the slip along it; u* the velocities without contact impulses. A is over normals and
+/// directions. f and beta are in N s, lambda (the slip speed) and all of w in m/s: to that end the
+/// last rows carry S = diag(A_nn) (Stewart and Trinkle: 1), so that the certificate's unit-free
+/// residual judges every row, whatever the masses are. With S = 1 M is copositive, z^T M z =
+/// |J^T (f, beta)|^2_W + lambda^T mu f; S scales rows and changes no solution. Without friction z =
+/// f and M is left factored, symmetric positive semidefinite.
 struct PyramidProblem {
   lcp::Problem problem;
   std::vector<int> frictional;       ///< the m contacts with mu > 0, ascending

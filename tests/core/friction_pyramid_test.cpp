@@ -1,5 +1,6 @@
 #include <signorini/core/response/assembly.h>
 #include <signorini/core/response/friction_pyramid.h>
+#include <signorini/lcp/certificate.h>
 
 #include "plane_contacts.h"
 
@@ -97,7 +98,8 @@ TEST(FrictionPyramid, WIsTheVelocityThatTheImpulsesReallyGive) {
       std::mt19937_64 rng(seed + 1000);
       lcp::Vector z(pyramid.problem.size());
       for (double& value : z) value = uniform(rng, 0, 1);
-      const lcp::Vector w = lcp::to_dense(pyramid.problem.M) * z + pyramid.problem.q;
+      const lcp::Matrix M = lcp::to_dense(pyramid.problem.M);
+      const lcp::Vector w = M * z + pyramid.problem.q;
 
       const std::vector<Vec3> impulses = contact_impulses(pyramid, scene.contacts, z);
       State after = scene.state;
@@ -109,14 +111,13 @@ TEST(FrictionPyramid, WIsTheVelocityThatTheImpulsesReallyGive) {
       for (int c = 0; c < m; ++c) {
         const int i = pyramid.frictional[c];
         const Vec3 u = relative_velocity(scene, after, scene.contacts[i]);
-        const double scale =
-            pyramid.problem.size() > 0 ? lcp::to_dense(pyramid.problem.M)(i, i) : 0;
+        const double scale = M(i, i);
         double total = 0.0;
         for (int j = 0; j < sides; ++j) {
           const double angle = 2.0 * std::numbers::pi * j / sides;
           const Vec3 direction =
               std::cos(angle) * pyramid.frames[c].t1 + std::sin(angle) * pyramid.frames[c].t2;
-          const double lambda = scale * z[n + sides * m + c];
+          const double lambda = z[n + sides * m + c];
           EXPECT_NEAR(w[n + sides * c + j], direction.dot(u) + lambda, 1e-11);
           total += z[n + sides * c + j];
         }
@@ -127,18 +128,49 @@ TEST(FrictionPyramid, WIsTheVelocityThatTheImpulsesReallyGive) {
   }
 }
 
-TEST(FrictionPyramid, MIsCopositive) {
+TEST(FrictionPyramid, MIsCopositiveUpToTheScaleOfTheConeRows) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     const Scene scene(seed);
     PyramidProblem pyramid;
     assemble_pyramid(scene.bodies, scene.state, scene.contacts, scene.allowance, 8, pyramid);
-    const lcp::Matrix M = lcp::to_dense(pyramid.problem.M);
+    lcp::Matrix M = lcp::to_dense(pyramid.problem.M);
+    for (int c = 0; c < 3; ++c) {
+      const int i = pyramid.frictional[c];
+      M.row(4 + 8 * 3 + c) /= M(i, i);
+    }
     std::mt19937_64 rng(seed);
     for (int trial = 0; trial < 50; ++trial) {
       lcp::Vector z(M.rows());
       for (double& value : z) value = std::max(0.0, uniform(rng, -1, 1));
       EXPECT_GE(z.dot(M * z), -1e-12) << "seed " << seed;
     }
+  }
+}
+
+TEST(FrictionPyramid, TheCertificateDoesNotDependOnTheMasses) {
+  // The same motion with masses (and impulses) a million times larger or smaller: w is the same.
+  const auto problem_with = [](double factor) {
+    Scene scene(5);
+    for (int k : {1, 2}) {
+      scene.bodies[k].mass *= factor;
+      scene.bodies[k].inertia *= factor;
+      scene.state[k].p *= factor;
+      scene.state[k].L *= factor;
+    }
+    PyramidProblem pyramid;
+    assemble_pyramid(scene.bodies, scene.state, scene.contacts, scene.allowance, 8, pyramid);
+    return pyramid.problem;
+  };
+  const lcp::Problem plain = problem_with(1.0);
+  std::mt19937_64 rng(5);
+  lcp::Vector z(plain.size());
+  for (double& value : z) value = uniform(rng, 0, 1);
+  const double residual = lcp::certify(plain, z).unit_free_residual;
+  for (const double factor : {1e-6, 1e6}) {
+    lcp::Vector scaled = z;
+    scaled.head(4 + 8 * 3) *= factor;
+    EXPECT_NEAR(lcp::certify(problem_with(factor), scaled).unit_free_residual, residual,
+                1e-9 * residual);
   }
 }
 
