@@ -52,7 +52,7 @@ struct ImpactSettings {
   std::string solver = "lemke";
   lcp::SolverSettings lcp = {.tolerance = 1e-12};
   /// Sequential laws: the order of the contacts, a permutation of 0 .. n-1; empty: as given.
-  std::vector<int> order;
+  std::vector<int> order = {};
   /// Sequential laws, repeated: the most passes, >= 1. Between two opposite walls with e = 1 the
   /// passes never end; with e < 1 they need about log(tolerance) / log(e).
   int max_passes = 10000;

@@ -1,0 +1,101 @@
+#include "bench/impact_study.h"
+
+#include <signorini/core/response/assembly.h>
+
+#include "bench/random_impact.h"
+
+#include <gtest/gtest.h>
+#include <sstream>
+
+namespace signorini::bench {
+namespace {
+
+TEST(ImpactStudy, EnergySafeFormsNeverGainOn300RandomImpacts) {
+  std::ostringstream out;
+  const ImpactCounts counts = run_impact_study({.impacts = 300, .seed = 1}, out);
+  EXPECT_TRUE(counts.passed()) << out.str();
+  EXPECT_EQ(counts.impacts, 300);
+  EXPECT_GE(counts.separating_share, 0.3);
+  EXPECT_LE(counts.worst_safe_gain, 1e-12);
+  EXPECT_EQ(counts.unanswered, 0);
+  // The study must be able to find what it looks for.
+  EXPECT_GT(counts.newton_gains, 0);
+  EXPECT_GT(counts.notes_gains, 0);
+  for (const ImpactRow& row : counts.rows) {
+    EXPECT_EQ(row.inadmissible, 0);
+    if (row.energy_safe) {
+      EXPECT_GT(row.reduced, 0);
+    }
+  }
+  EXPECT_NE(out.str().find("PASS"), std::string::npos);
+}
+
+TEST(ImpactStudy, TheSameSeedGivesTheSameTable) {
+  std::ostringstream first;
+  std::ostringstream second;
+  std::ostringstream other;
+  run_impact_study({.impacts = 20, .seed = 7}, first);
+  run_impact_study({.impacts = 20, .seed = 7}, second);
+  run_impact_study({.impacts = 20, .seed = 8}, other);
+  EXPECT_EQ(first.str(), second.str());
+  EXPECT_NE(first.str(), other.str());
+}
+
+TEST(ImpactStudy, NoImpactsAndANegativeNumber) {
+  std::ostringstream out;
+  EXPECT_EQ(run_impact_study({.impacts = 0, .seed = 1}, out).impacts, 0);
+  EXPECT_THROW(run_impact_study({.impacts = -1, .seed = 1}, out), std::invalid_argument);
+}
+
+TEST(ImpactStudy, AGainFailsTheVerdict) {
+  ImpactCounts counts;
+  counts.contacts = 10;
+  counts.separating_share = 0.4;
+  ImpactRow row;
+  row.energy_safe = true;
+  counts.rows = {row};
+  EXPECT_TRUE(counts.passed());
+  counts.rows[0].gained = 1;
+  EXPECT_FALSE(counts.passed());
+  counts.rows[0] = row;
+  counts.rows[0].inadmissible = 1;
+  EXPECT_FALSE(counts.passed());
+  counts.rows[0] = row;
+  counts.unanswered = 1;
+  EXPECT_FALSE(counts.passed());
+  counts.unanswered = 0;
+  counts.separating_share = 0.2;
+  EXPECT_FALSE(counts.passed());
+}
+
+TEST(RandomImpacts, AreValidAndHoldWhatTheStudyPromises) {
+  double least_mass = 1e9;
+  double most_mass = 0.0;
+  std::size_t most_bodies = 0;
+  std::size_t least_bodies = 99;
+  int faces_or_copies = 0;
+  for (int index = 0; index < 500; ++index) {
+    const RandomImpact impact = draw_random_impact(3, index);
+    for (const Body& body : impact.bodies) {
+      validate(body);
+      least_mass = std::min(least_mass, body.mass);
+      most_mass = std::max(most_mass, body.mass);
+    }
+    validate(impact.bodies, impact.state);
+    validate(impact.contacts, static_cast<int>(impact.bodies.size()));
+    check_dynamic(impact.bodies, impact.contacts);
+    most_bodies = std::max(most_bodies, impact.bodies.size());
+    least_bodies = std::min(least_bodies, impact.bodies.size());
+    for (std::size_t i = 1; i < impact.contacts.size(); ++i) {
+      faces_or_copies += impact.contacts[i].normal == impact.contacts[i - 1].normal ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(least_bodies, 2u);
+  EXPECT_EQ(most_bodies, 20u);
+  EXPECT_LE(most_mass / least_mass, 1000.0 * (1 + 1e-12));
+  EXPECT_GT(most_mass / least_mass, 900.0);
+  EXPECT_GT(faces_or_copies, 500);
+}
+
+}  // namespace
+}  // namespace signorini::bench
