@@ -7,7 +7,7 @@ import { isDark, lineStyle } from './palette';
 import {
   drawable, lineName, linearLimits, logLimits, merged, plotNotes, rangeOf, valueAt,
 } from './plot_data';
-import type { Column } from './plot_data';
+import type { Column, PlotData } from './plot_data';
 import type { Plot, Series } from './report';
 
 const kHeight = 250;
@@ -81,19 +81,21 @@ function inDrawingOrder(lines: readonly Series[]): DrawnLine[] {
   return [...drawn.filter(isReference), ...drawn.filter((one) => !isReference(one))];
 }
 
-/** What the legend shows of a line under the cursor: nothing while there is none. */
-const lineValue: uPlot.Series.Value = (chart, _value, series) => {
-  const row = chart.cursor.idx;
+/**
+ * What the legend shows of a line under the cursor: nothing while there is none.
+ * @param all the points of all lines, also those that a logarithmic axis cannot show
+ */
+function legendValue(all: PlotData, series: number, row: number | null | undefined): string {
   if (row === null || row === undefined) return '';
-  const found = valueAt(chart.data[0] as number[], chart.data[series] as Column, row);
+  const found = valueAt(all.x, all.columns[series] ?? [], row);
   if (found === null) return '–';
   return `${found.isPoint ? '' : '≈ '}${formatNumber(found.value, 5)}`;
-};
+}
 
 const xValue: uPlot.Series.Value = (_, value: number | null) =>
   (value === null ? '' : formatNumber(value, 5));
 
-function seriesOptions({ line, rank }: DrawnLine): uPlot.Series {
+function seriesOptions({ line, rank }: DrawnLine, all: PlotData): uPlot.Series {
   const style = lineStyle(line.engine, rank, false);
   return {
     label: lineName(line),
@@ -101,7 +103,8 @@ function seriesOptions({ line, rank }: DrawnLine): uPlot.Series {
     width: style.width,
     dash: style.dash,
     points: { show: line.x.length < 2 },
-    value: lineValue,
+    // uPlot counts x as series 0.
+    value: (chart, _, series) => legendValue(all, series - 1, chart.cursor.idx),
   };
 }
 
@@ -162,7 +165,10 @@ export function plotView(plot: Plot): PlotView {
     notes.length > 0 ? h('ul', { class: 'plot-notes' }, ...notes.map((note) => h('li', {}, note))) : null);
 
   const lines = inDrawingOrder(plot.series);
-  const data = merged(lines.map(({ line }) => ({ x: line.x, y: drawable(line.y, plot.log_y) })));
+  const columns = (log: boolean) =>
+    merged(lines.map(({ line }) => ({ x: line.x, y: drawable(line.y, log) })));
+  const all = columns(false);
+  const data = plot.log_y ? columns(true) : all;
   if (rangeOf(data.columns) === null) {
     place.append(h('p', { class: 'nothing' }, 'Nothing to draw.'));
     return { element, attach: () => undefined, detach: () => undefined };
@@ -197,7 +203,7 @@ export function plotView(plot: Plot): PlotView {
           y: { distr: plot.log_y ? 3 : 1, range: () => yLimits },
         },
         axes: axes(plot),
-        series: [{ label: plot.x_label, value: xValue }, ...lines.map(seriesOptions)],
+        series: [{ label: plot.x_label, value: xValue }, ...lines.map((line) => seriesOptions(line, all))],
         legend: { markers: { width: 0 } },
         cursor: {
           sync: { key: syncKey, scales: ['x', null] },
