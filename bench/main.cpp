@@ -1,0 +1,113 @@
+#include <signorini/lcp/io/whole_file.h>
+
+#include "bench/impact_study.h"
+
+#ifdef SIGNORINI_HAS_GMP
+#include "bench/exactness_study.h"
+#endif
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fmt/format.h>
+#include <iostream>
+#include <string>
+
+namespace signorini::bench {
+namespace {
+
+constexpr int kClaimsHold = 0;
+constexpr int kWrongClaim = 1;
+constexpr int kBadUsage = 64;
+constexpr int kFailed = 70;
+
+/// What the command line asks of a study.
+struct StudyOptions {
+  int count;
+  std::uint64_t seed = 1;
+  std::string out;  // a folder, or empty: print only
+};
+
+CLI::App* add_study(CLI::App& app, const std::string& name, const std::string& what,
+                    const std::string& counted, StudyOptions& options) {
+  CLI::App* study = app.add_subcommand(name, what);
+  study->add_option("--" + counted, options.count, "How many " + counted)
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  study->add_option("--seed", options.seed, "Of the random numbers")->capture_default_str();
+  study->add_option("--out", options.out,
+                    "Folder for " + name + ".csv, made if absent (default: print only)");
+  return study;
+}
+
+void write_csv(const StudyOptions& options, const std::string& name, const std::string& csv) {
+  if (options.out.empty()) {
+    return;
+  }
+  const std::filesystem::path file = std::filesystem::path(options.out) / (name + ".csv");
+  lcp::write_whole_file(file, csv);
+  fmt::print("written: {}\n", file.string());
+}
+
+/// The folder is made before the study runs, so that a wrong name does not cost the run.
+void make_folder(const StudyOptions& options) {
+  if (!options.out.empty()) {
+    std::filesystem::create_directories(options.out);
+  }
+}
+
+int run_exactness([[maybe_unused]] const StudyOptions& options) {
+#ifdef SIGNORINI_HAS_GMP
+  make_folder(options);
+  const ExactnessCounts counts =
+      run_exactness_study({.problems = options.count, .seed = options.seed}, std::cout);
+  write_csv(options, "exactness", counts.to_csv());
+  return counts.wrong() == 0 ? kClaimsHold : kWrongClaim;
+#else
+  fmt::print(stderr, "signorini-bench exactness: this build has no GMP (SIGNORINI_WITH_GMP=OFF)\n");
+  return kFailed;
+#endif
+}
+
+int run_impacts(const StudyOptions& options) {
+  make_folder(options);
+  const ImpactCounts counts =
+      run_impact_study({.impacts = options.count, .seed = options.seed}, std::cout);
+  write_csv(options, "impacts", counts.to_csv());
+  return counts.passed() ? kClaimsHold : kWrongClaim;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{
+      "Long studies of Signorini. Each prints a table and judges every answer it counts.\n"
+      "Exit: 0 every claim holds, 1 one was wrong, 64 bad usage, 70 the study could not run."};
+  app.set_version_flag("--version", SIGNORINI_VERSION);
+  app.require_subcommand(1);
+  StudyOptions exactness{.count = 100000};
+  StudyOptions impacts{.count = 10000};
+  const CLI::App* exactness_command =
+      add_study(app, "exactness", "Small LCPs with exact data, every claim judged in rationals",
+                "problems", exactness);
+  add_study(app, "impacts", "Random multi-contact impacts: the kinetic energy each law gains",
+            "impacts", impacts);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kBadUsage;
+  }
+  return exactness_command->parsed() ? run_exactness(exactness) : run_impacts(impacts);
+}
+
+}  // namespace
+}  // namespace signorini::bench
+
+int main(int argc, char** argv) {
+  try {
+    return signorini::bench::run(argc, argv);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "signorini-bench: {}\n", error.what());
+    return signorini::bench::kFailed;
+  }
+}

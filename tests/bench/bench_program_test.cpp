@@ -1,0 +1,69 @@
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <string>
+#include <sys/wait.h>
+
+namespace {
+
+/// The exit code of signorini-bench; what it prints is dropped.
+int run(const std::string& arguments) {
+  const int status =
+      std::system((std::string(SIGNORINI_BENCH) + " " + arguments + " >/dev/null 2>&1").c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+class BenchProgram : public testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::remove_all(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  const std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) /
+      ("bench_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+};
+
+TEST_F(BenchProgram, HelpAndVersionExitZero) {
+  EXPECT_EQ(run("--help"), 0);
+  EXPECT_EQ(run("--version"), 0);
+  EXPECT_EQ(run("exactness --help"), 0);
+}
+
+TEST_F(BenchProgram, BadUsageExits64) {
+  EXPECT_EQ(run(""), 64);
+  EXPECT_EQ(run("nonsense"), 64);
+  EXPECT_EQ(run("exactness --problems -1"), 64);
+  EXPECT_EQ(run("exactness --problems many"), 64);
+  EXPECT_EQ(run("impacts --problems 3"), 64);
+}
+
+TEST_F(BenchProgram, ImpactsWritesItsCsv) {
+  EXPECT_EQ(run("impacts --impacts 20 --out '" + folder_.string() + "'"), 0);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "impacts.csv"));
+}
+
+#ifdef SIGNORINI_HAS_GMP
+TEST_F(BenchProgram, ExactnessWritesItsCsvAndNothingElse) {
+  EXPECT_EQ(run("exactness --problems 40 --seed 5 --out '" + folder_.string() + "'"), 0);
+  std::ifstream csv(folder_ / "exactness.csv");
+  std::string header;
+  ASSERT_TRUE(std::getline(csv, header));
+  EXPECT_EQ(header.rfind("family,solver,status,count,", 0), 0u) << header;
+  const auto files = std::filesystem::directory_iterator(folder_);
+  EXPECT_EQ(std::distance(begin(files), end(files)), 1);
+}
+
+TEST_F(BenchProgram, AFolderThatCannotBeMadeEndsBeforeTheStudy) {
+  std::filesystem::create_directories(folder_);
+  std::ofstream(folder_ / "file") << "in the way";
+  EXPECT_EQ(run("exactness --problems 1000000 --out '" + (folder_ / "file" / "out").string() + "'"),
+            70);
+}
+#else
+TEST_F(BenchProgram, ExactnessSaysThatItNeedsGmp) {
+  EXPECT_EQ(run("exactness --problems 1"), 70);
+}
+#endif
+
+}  // namespace
