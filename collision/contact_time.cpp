@@ -59,22 +59,30 @@ SpeedBound checked_bound(const Motion& motion, double t0, double t1) {
 }
 
 /// How far, between two times, a point of a shape can be from the straight line between its places
-/// at these times; +infinity where no bound is known.
-double deviation(const SpeedBound& speed, double radius, const Pose& start, const Pose& end,
-                 double step) {
+/// at these times.
+struct Straying {
+  double anywhere = 0.0;    ///< in any direction, m; +infinity where no bound is known
+  Vec3 arc = Vec3::Zero();  ///< along n by |n x arc| more, m: the arc about a fixed axis
+
+  [[nodiscard]] double along(const Vec3& n) const { return anywhere + n.cross(arc).norm(); }
+};
+
+Straying straying(const SpeedBound& speed, double radius, const Pose& start, const Pose& end,
+                  double step) {
   const double travel = speed.linear * step;
   const double chord = std::min(travel, (end.position - start.position).norm());
-  const double straying = 0.5 * leg(travel, chord) + (travel - chord);
+  const double bend = 0.5 * leg(travel, chord) + (travel - chord);
   const double turn = speed.angular * step;
   if (radius == 0.0 || turn == 0.0) {
-    return straying;
+    return {bend, Vec3::Zero()};
   }
   if (turn > kLargestTurn || !std::isfinite(radius)) {
-    return kInfinity;
+    return {kInfinity, Vec3::Zero()};
   }
-  const double angle = std::min(turn, start.orientation.angularDistance(end.orientation));
-  const double turn_straying = 1.1 * (0.5 * leg(turn, angle) + (turn - angle));
-  return straying + radius * (0.125 * angle * angle + turn_straying);
+  const Eigen::AngleAxisd turned(end.orientation * start.orientation.conjugate());
+  const double angle = std::min(turn, turned.angle());
+  const double turn_bend = 1.1 * (0.5 * leg(turn, angle) + (turn - angle));
+  return {bend + radius * turn_bend, radius * 0.125 * angle * angle * turned.axis()};
 }
 
 class Search {
@@ -95,12 +103,14 @@ class Search {
     for (const Pose* pose : {&start.shape_a, &start.shape_b, &end.shape_a, &end.shape_b}) {
       far = std::max(far, pose->position.cwiseAbs().maxCoeff());
     }
-    tolerance_ = std::max(kRelativeTolerance * size, 64.0 * kEpsilon * far);
+    rounding_ = 16.0 * kEpsilon * (size + far);
+    tolerance_ = std::max(kRelativeTolerance * size, 4.0 * rounding_);
   }
 
   [[nodiscard]] std::optional<double> run() {
     Moment here = at(0.0);
     level_ = std::min(0.0, here.gap);
+    const bool touching = here.gap <= 0.5 * tolerance_;
     double last_above = 0.0;
     double step = duration_;
     double sampling_step = 0.0;
@@ -119,9 +129,9 @@ class Search {
         continue;
       }
       if (next.gap <= level_ - 0.5 * tolerance_) {
-        return last_time_above(last_above, next.time);
+        return touching && last_above == 0.0 ? 0.0 : crossing_time(last_above, next.time);
       }
-      if (next.gap >= level_) {
+      if (next.gap >= level_ - rounding_) {
         last_above = next.time;
         level_ = std::max(level_, std::min(0.0, next.gap));
       }
@@ -169,16 +179,16 @@ class Search {
     if (0.5 * (t0.gap + t1.gap - closing_bound(t0, t1.time) * step) >= floor) {
       return true;
     }
-    const double straying = deviation(checked_bound(a_.motion, t0.time, t1.time), radius_a_,
-                                      t0.frame_a, t1.frame_a, step) +
-                            deviation(checked_bound(b_.motion, t0.time, t1.time), radius_b_,
-                                      t0.frame_b, t1.frame_b, step);
-    if (!(std::min(t0.gap, t1.gap) - straying >= floor)) {
+    const Straying a = straying(checked_bound(a_.motion, t0.time, t1.time), radius_a_, t0.frame_a,
+                                t1.frame_a, step);
+    const Straying b = straying(checked_bound(b_.motion, t0.time, t1.time), radius_b_, t0.frame_b,
+                                t1.frame_b, step);
+    if (!(std::min(t0.gap, t1.gap) - a.anywhere - b.anywhere >= floor)) {
       return false;
     }
     for (const Moment* moment : {&t0, &t1}) {
       const Vec3 n = normal(*moment);
-      if (std::min(separation(t0, n), separation(t1, n)) - straying >= floor) {
+      if (std::min(separation(t0, n), separation(t1, n)) - a.along(n) - b.along(n) >= floor) {
         return true;
       }
     }
@@ -214,9 +224,9 @@ class Search {
     return step * std::clamp(crossing, 0.01, 0.99);
   }
 
-  /// The last time in [low, high] at which the gap is at or above the level, by bisection to the
-  /// resolution of time. @pre gap(high) < level
-  [[nodiscard]] double last_time_above(double low, double high) const {
+  /// A time in [low, high] at which the gap crosses the level, by bisection to the resolution of
+  /// time; its earlier side. @pre gap(low) >= level - rounding, gap(high) < level
+  [[nodiscard]] double crossing_time(double low, double high) const {
     while (true) {
       const double middle = 0.5 * (low + high);
       if (!(middle > low && middle < high)) {
@@ -231,7 +241,8 @@ class Search {
   double duration_;
   double radius_a_;
   double radius_b_;
-  double tolerance_ = 0.0;
+  double rounding_ = 0.0;   ///< of a gap, m
+  double tolerance_ = 0.0;  ///< eps
   double level_ = 0.0;
 };
 

@@ -1,3 +1,4 @@
+#include <signorini/collision/feature_id.h>
 #include <signorini/collision/pair_query.h>
 
 #include "random_pairs.h"
@@ -198,6 +199,138 @@ TEST_P(PairProperties, HoldWhereTheShapesKiss) {
     }
   }
   print(GetParam().name, counts);
+}
+
+/// The contact of `contacts` with this id, or null.
+const Contact* with_id(const std::vector<Contact>& contacts, std::uint64_t id) {
+  const auto found = std::find_if(contacts.begin(), contacts.end(),
+                                  [&](const Contact& c) { return c.feature_id == id; });
+  return found == contacts.end() ? nullptr : &*found;
+}
+
+/// Both sets list the same points, in any order, to a tolerance.
+bool same_points(const std::vector<Contact>& p, const std::vector<Contact>& q, double tolerance) {
+  const auto has = [&](const std::vector<Contact>& contacts, const Contact& wanted) {
+    return std::any_of(contacts.begin(), contacts.end(), [&](const Contact& c) {
+      return (c.point_a - wanted.point_a).norm() <= tolerance &&
+             (c.point_b - wanted.point_b).norm() <= tolerance;
+    });
+  };
+  return p.size() == q.size() &&
+         std::all_of(p.begin(), p.end(), [&](const Contact& c) { return has(q, c); });
+}
+
+void exchange(std::vector<Contact>& contacts) {
+  for (Contact& contact : contacts) {
+    std::swap(contact.point_a, contact.point_b);
+    contact.normal = -contact.normal;
+    contact.feature_id = exchanged(contact.feature_id);
+  }
+}
+
+// Away from ties: the points, normals and features do not depend on the order of the shapes.
+TEST_P(PairProperties, ExchangeOfAAndBMirrorsTheContactSet) {
+  Random random(20260103);
+  int compared = 0;
+  for (int k = 0; k < kPosesPerPair / 10; ++k) {
+    const PlacedPair pair = random_pair(random, GetParam().a, GetParam().b, Placement::kAnywhere);
+    const double margin = random_margin(random, pair);
+    const std::vector<Contact> contacts = find(pair, margin);
+    std::vector<Contact> mirrored = find(exchanged(pair), margin);
+    exchange(mirrored);
+    ASSERT_EQ(contacts.size(), mirrored.size()) << describe(pair) << margin;
+    for (const Contact& contact : contacts) {
+      const Contact* other = with_id(mirrored, contact.feature_id);
+      ASSERT_NE(other, nullptr) << describe(pair) << margin;
+      // A normal from two near points is uncertain by the rounding of their difference.
+      const double turn = pair.rounding / std::max(std::abs(contact.gap), 1e-6 * pair.size);
+      ASSERT_LE((other->normal - contact.normal).norm(), 1e-9 + 64.0 * turn) << describe(pair);
+      ASSERT_LE((other->point_a - contact.point_a).norm(), 1e-6 * pair.size + rounding(pair));
+      ASSERT_LE((other->point_b - contact.point_b).norm(), 1e-6 * pair.size + rounding(pair));
+      ++compared;
+    }
+  }
+  std::printf("    %s: %d contacts compared\n", GetParam().name, compared);
+  EXPECT_GT(compared, kPosesPerPair / 40);
+}
+
+// Ties included: faces flush, boxes equal. The points are the same whichever face carries them.
+TEST_P(PairProperties, ExchangeOfAAndBKeepsThePointsOfAlignedShapes) {
+  Random random(20260104);
+  int compared = 0;
+  for (int k = 0; k < kPosesPerPair / 10; ++k) {
+    const PlacedPair pair =
+        kissing(random, random_pair(random, GetParam().a, GetParam().b, Placement::kAligned));
+    std::vector<Contact> mirrored = find(exchanged(pair), 0.01 * pair.size);
+    exchange(mirrored);
+    const std::vector<Contact> contacts = find(pair, 0.01 * pair.size);
+    ASSERT_TRUE(same_points(contacts, mirrored, 1e-5 * pair.size + rounding(pair)))
+        << describe(pair) << contacts.size() << " and " << mirrored.size();
+    compared += static_cast<int>(contacts.size());
+  }
+  std::printf("    %s: %d contacts compared\n", GetParam().name, compared);
+}
+
+TEST_P(PairProperties, ARigidMotionCarriesTheContactSetAlong) {
+  Random random(20260105);
+  int compared = 0;
+  for (int k = 0; k < kPosesPerPair / 10; ++k) {
+    PlacedPair pair = random_pair(random, GetParam().a, GetParam().b, Placement::kAnywhere);
+    const Pose motion{pair.size * testing::random_direction(random),
+                      testing::random_orientation(random)};
+    const double margin = random_margin(random, pair);
+    const PlacedPair there = carried(pair, motion);
+    pair.rounding += std::numeric_limits<double>::epsilon() * there.pose_b.position.norm();
+    ASSERT_NEAR(distance(there), distance(pair), rounding(pair)) << describe(pair);
+    std::vector<Contact> contacts = find(pair, margin);
+    const std::vector<Contact> carried_contacts = find(there, margin);
+    ASSERT_EQ(contacts.size(), carried_contacts.size()) << describe(pair) << margin;
+    for (const Contact& contact : contacts) {
+      const Contact* other = with_id(carried_contacts, contact.feature_id);
+      ASSERT_NE(other, nullptr) << describe(pair) << margin;
+      ASSERT_LE((other->point_a - motion * contact.point_a).norm(),
+                1e-6 * pair.size + rounding(pair));
+      ++compared;
+    }
+  }
+  std::printf("    %s: %d contacts compared\n", GetParam().name, compared);
+}
+
+TEST(BoxBoxDistance, AgreesWithAQuadraticProgrammeWhereApart) {
+  Random random(20260106);
+  int apart = 0;
+  for (int k = 0; k < kPosesPerPair / 40; ++k) {
+    PlacedPair pair = random_pair(random, ShapeKind::kBox, ShapeKind::kBox, placement_of(k));
+    const Box& a = std::get<Box>(pair.a);
+    const Box& b = std::get<Box>(pair.b);
+    const double d = distance(pair);
+    const double reference = testing::reference_box_distance(a, pair.pose_a, b, pair.pose_b);
+    // Overlapping boxes leave the reference the rounding of near-singular systems.
+    EXPECT_NEAR(std::max(d, 0.0), reference, rounding(pair) + 1e-12 * pair.size) << describe(pair);
+    apart += d > 0.0;
+  }
+  std::printf("    %d poses, %d apart\n", kPosesPerPair / 40, apart);
+}
+
+TEST(BoxBoxDistance, IsMinusTheLeastTranslationWhereOverlapping) {
+  Random random(20260107);
+  int overlapping = 0;
+  for (int k = 0; k < kPosesPerPair / 2000; ++k) {
+    const PlacedPair pair = random_pair(random, ShapeKind::kBox, ShapeKind::kBox, placement_of(k));
+    const double d = distance(pair);
+    if (d > -1e-6 * pair.size) {
+      continue;
+    }
+    ++overlapping;
+    const double large = bounding_radius(pair.a, Pose{}) + bounding_radius(pair.b, Pose{});
+    EXPECT_NEAR(-d,
+                testing::reference_box_depth(std::get<Box>(pair.a), pair.pose_a,
+                                             std::get<Box>(pair.b), pair.pose_b),
+                1e-8 * large)
+        << describe(pair);
+  }
+  std::printf("    %d overlapping\n", overlapping);
+  EXPECT_GT(overlapping, 0);
 }
 
 }  // namespace

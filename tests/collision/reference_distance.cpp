@@ -1,5 +1,6 @@
 #include "reference_distance.h"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,33 +21,38 @@ std::array<Vec3, 8> vertices(const Box& box, const Pose& pose) {
   return result;
 }
 
-/// Projected gradient with Nesterov's acceleration, restarted when the value rises.
-double minimise(const Matrix36& D, const Vec3& c, const Vector6& half) {
-  const double lipschitz = (D * D.transpose()).trace();
-  Vector6 x = Vector6::Zero();
-  Vector6 y = x;
-  double momentum = 1.0;
-  double value = c.squaredNorm();
-  for (int k = 0; k < 20000; ++k) {
-    const Vector6 next =
-        (y - D.transpose() * (c + D * y) / lipschitz).cwiseMax(-half).cwiseMin(half);
-    const double next_value = (c + D * next).squaredNorm();
-    if (next_value > value) {
-      momentum = 1.0;
-      y = x;
-      continue;
-    }
-    const double next_momentum = 0.5 * (1.0 + std::sqrt(1.0 + 4.0 * momentum * momentum));
-    y = next + (momentum - 1.0) / next_momentum * (next - x);
-    const bool still = (next - x).norm() <= 1e-15 * half.norm();
-    x = next;
-    value = next_value;
-    momentum = next_momentum;
-    if (still) {
-      break;
+/// min |c + D x| over the x whose coordinates k are -half, +half or free as the digits 0, 1, 2 of
+/// `pattern` to base 3 say; the free ones put back into their bounds, so that it is never below the
+/// minimum over the box.
+double value_of_pattern(const Matrix36& D, const Vec3& c, const Vector6& half, int pattern) {
+  Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> free_columns(3, 0);
+  std::array<int, 3> free_index{};
+  Vec3 fixed = c;
+  for (int k = 0; k < 6; ++k, pattern /= 3) {
+    if (pattern % 3 == 2) {
+      free_index[free_columns.cols()] = k;
+      free_columns.conservativeResize(3, free_columns.cols() + 1);
+      free_columns.rightCols<1>() = D.col(k);
+    } else {
+      fixed += (pattern % 3 == 0 ? -half[k] : half[k]) * D.col(k);
     }
   }
-  return std::sqrt(value);
+  if (free_columns.cols() > 0) {
+    const Eigen::VectorXd x = free_columns.colPivHouseholderQr().solve(-fixed);
+    for (int i = 0; i < x.size(); ++i) {
+      const double bound = half[free_index[i]];
+      fixed += std::clamp(x[i], -bound, bound) * free_columns.col(i);
+    }
+  }
+  return fixed.norm();
+}
+
+int free_count(int pattern) {
+  int count = 0;
+  for (int k = 0; k < 6; ++k, pattern /= 3) {
+    count += pattern % 3 == 2;
+  }
+  return count;
 }
 
 }  // namespace
@@ -56,7 +62,14 @@ double reference_box_distance(const Box& a, const Pose& pose_a, const Box& b, co
   D << pose_a.orientation.toRotationMatrix(), -pose_b.orientation.toRotationMatrix();
   Vector6 half;
   half << a.half_extents, b.half_extents;
-  return minimise(D, pose_a.position - pose_b.position, half);
+  double least = std::numeric_limits<double>::infinity();
+  for (int pattern = 0; pattern < 729; ++pattern) {
+    if (free_count(pattern) <= 3) {
+      least =
+          std::min(least, value_of_pattern(D, pose_a.position - pose_b.position, half, pattern));
+    }
+  }
+  return least;
 }
 
 double reference_box_depth(const Box& a, const Pose& pose_a, const Box& b, const Pose& pose_b) {

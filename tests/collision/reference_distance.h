@@ -5,9 +5,9 @@
 namespace signorini::collision::testing {
 
 /// The distance of two boxes, independent of the library's: the quadratic programme
-/// min |c_A + A x - c_B - B y|, |x| <= half_A, |y| <= half_B by projected gradients with Nesterov's
-/// acceleration (convex: every end is the minimum). Near 0 if they overlap. Never too small; too
-/// large by about 1e-6 of the larger box at most.
+/// min |c_A + A x - c_B - B y|, |x| <= half_A, |y| <= half_B by trying every choice of coordinates
+/// at their bounds that leaves at most three free (a minimum with no more free ones always exists).
+/// 0, to rounding, if they overlap.
 double reference_box_distance(const Box& a, const Pose& pose_a, const Box& b, const Pose& pose_b);
 
 /// The least translation that parts two overlapping boxes: the least distance from the origin to a
