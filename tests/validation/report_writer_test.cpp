@@ -62,6 +62,12 @@ class ReportWriter : public ::testing::Test {
   fs::path folder_;
 };
 
+/// The sample report, made once.
+const Report& sample() {
+  static const Report report = sample_report();
+  return report;
+}
+
 /// The message of what a call throws; a failure if it throws nothing of this kind.
 template <typename Exception, typename Call>
 std::string message_of(const Call& call) {
@@ -242,7 +248,7 @@ TEST(ReportVerdict, BulletsCounterpartHasTheSameName) {
 // ---- report.json
 
 TEST(ReportJson, HoldsEveryFieldOfTheReportBitForBit) {
-  const Report report = sample_report();
+  const Report& report = sample();
   const Json json = Json::parse(report_json(report));
   EXPECT_EQ(json["schema"], "signorini-report");
   EXPECT_EQ(json["schema_version"], 1);
@@ -258,7 +264,7 @@ TEST(ReportJson, HoldsEveryFieldOfTheReportBitForBit) {
 }
 
 TEST(ReportJson, SummaryCountsTheScenesOfEachVerdict) {
-  const Json summary = Json::parse(report_json(sample_report()))["summary"];
+  const Json summary = Json::parse(report_json(sample()))["summary"];
   EXPECT_EQ(summary["scenes"], 16);
   EXPECT_EQ(summary["fail"], 1);
   EXPECT_EQ(summary["information"], 2);
@@ -308,7 +314,7 @@ TEST(ReportJson, BytesThatAreNoUtf8AreReplaced) {
 }
 
 TEST(ReportJson, PageTextHoldsNoOpeningBracketAndTheSameTexts) {
-  const Report report = sample_report();
+  const Report& report = sample();
   const std::string text = report_page_json(report);
   EXPECT_EQ(text.find('<'), std::string::npos);
   const Json json = Json::parse(text);
@@ -401,7 +407,7 @@ TEST(ReportMarkdown, EscapesWhatTablesAndHtmlWouldRead) {
 }
 
 TEST(ReportMarkdown, EveryRowOfATableHasAsManyCellsAsItsHeader) {
-  std::istringstream lines(report_markdown(sample_report(), ""));
+  std::istringstream lines(report_markdown(sample(), ""));
   std::size_t bars_of_table = 0;
   int rows = 0;
   for (std::string line; std::getline(lines, line);) {
@@ -425,14 +431,14 @@ TEST(ReportMarkdown, EveryRowOfATableHasAsManyCellsAsItsHeader) {
 }
 
 TEST(ReportMarkdown, FailedScenesStandFirst) {
-  const std::string text = report_markdown(sample_report(), "");
+  const std::string text = report_markdown(sample(), "");
   EXPECT_NE(text.find("16 scenes: **1 failed**, 13 passed, 2 for information only."),
             std::string::npos);
   EXPECT_LT(text.find("| **FAIL** | stack-of-5-boxes"), text.find("| pass | free-flight"));
 }
 
 TEST(ReportMarkdown, SaysThatTheRunIsPartialAndWhyThereIsNoPage) {
-  Report report = sample_report();
+  Report report = sample();
   EXPECT_EQ(report_markdown(report, "").find("PARTIAL"), std::string::npos);
   report.partial = true;
   const std::string text = report_markdown(report, "this build had no node");
@@ -461,28 +467,28 @@ TEST(ReportPage, BuiltTemplateLoadsNothingFromElsewhere) {
 
 TEST_F(ReportWriter, MakesTheFolderAndNamesWhatItWrote) {
   folder_ /= "of/two";
-  const std::vector<std::string> written = write_report(sample_report(), folder_.string());
+  const std::vector<std::string> written = write_report(sample(), folder_.string());
   const bool has_page = report_page_absent_because().empty();
   ASSERT_EQ(written.size(), has_page ? 3U : 2U);
   EXPECT_EQ(written[0], (folder_ / "report.json").string());
   EXPECT_EQ(written[1], (folder_ / "report.md").string());
   EXPECT_EQ(names_in_folder().size(), written.size());
-  EXPECT_EQ(read("report.json"), report_json(sample_report()));
-  EXPECT_EQ(read("report.md"), report_markdown(sample_report(), report_page_absent_because()));
+  EXPECT_EQ(read("report.json"), report_json(sample()));
+  EXPECT_EQ(read("report.md"), report_markdown(sample(), report_page_absent_because()));
   folder_ = folder_.parent_path().parent_path();
 }
 
 TEST_F(ReportWriter, PageOfTheSampleIsOneSmallFileWithAllTexts) {
-  write_report(sample_report(), folder_.string());
+  write_report(sample(), folder_.string());
   if (!report_page_absent_because().empty()) GTEST_SKIP() << report_page_absent_because();
   const std::string page = read("report.html");
-  EXPECT_NE(page.find(report_page_json(sample_report())), std::string::npos);
+  EXPECT_NE(page.find(report_page_json(sample())), std::string::npos);
   // 16 scenes; the default set is a small multiple of that and must stay far below 10 MB.
   EXPECT_LT(page.size(), 2'000'000U);
 }
 
 TEST_F(ReportWriter, ReplacesAnEarlierReport) {
-  write_report(sample_report(), folder_.string());
+  write_report(sample(), folder_.string());
   write_report(Report{}, folder_.string());
   EXPECT_EQ(Json::parse(read("report.json"))["scenes"].size(), 0U);
 }
@@ -528,7 +534,7 @@ TEST_F(ReportWriter, FullDiskLeavesTheEarlierReportAsItWas) {
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
   std::string message;
   try {
-    write_report(sample_report(), folder_.string());
+    write_report(sample(), folder_.string());
   } catch (const std::runtime_error& error) {
     message = error.what();
   }
