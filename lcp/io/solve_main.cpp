@@ -66,10 +66,21 @@ class OutputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+void print(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) {
+    throw OutputError("standard output: not written");
+  }
+}
+
+/// To standard error; if that fails, too, there is nobody to tell.
+void print_error(const std::string& line) {
+  std::fputs((line + "\n").c_str(), stderr);
+}
+
 /// One line on standard error while something takes long, if a person is looking.
 void show_progress(const std::string& text) {
   if (::isatty(STDERR_FILENO) != 0) {
-    fmt::print(stderr, "{}\n", text);
+    print_error(text);
   }
 }
 
@@ -175,8 +186,8 @@ void write_output(const Options& options, const Result& result) {
     return;
   }
   if (!result.z.allFinite()) {
-    fmt::print(stderr, "{}: not written: there is no z ({})\n", options.output,
-               to_string(result.status));
+    print_error(fmt::format("{}: not written: there is no z ({})", options.output,
+                            to_string(result.status)));
     return;
   }
   try {
@@ -185,8 +196,9 @@ void write_output(const Options& options, const Result& result) {
     throw OutputError(error.what());
   }
   if (!options.json || !is_solved(result.status)) {
-    fmt::print(stderr, "{}: written ({})\n", options.output,
-               is_solved(result.status) ? "the solution" : "the best iterate, NOT a solution");
+    print_error(fmt::format(
+        "{}: written ({})", options.output,
+        is_solved(result.status) ? "the solution" : "the best iterate, NOT a solution"));
   }
 }
 
@@ -200,11 +212,11 @@ int exit_code(const Result& result) {
 int run_all(const Options& options, const Problem& problem) {
   const AllResults all = solve_all(problem, options.settings);
   if (options.json) {
-    fmt::print("{}", results_json(all.results, all.left_out));
+    print(results_json(all.results, all.left_out));
   } else {
-    fmt::print("{}", results_table(all.results));
+    print(results_table(all.results));
     for (const std::string& line : all.left_out) {
-      fmt::print("{}\n", line);
+      print(line + "\n");
     }
   }
   if (all.results.empty()) {
@@ -227,16 +239,16 @@ int run_one(const Options& options, const Problem& problem) {
   }
   const Result& result = tried[best_of(tried)];
   if (options.json) {
-    fmt::print("{}", result_json(result, tried));
+    print(result_json(result, tried));
   } else {
     if (options.solver == "auto") {
       std::vector<std::string> names;
       for (const Result& one : tried) {
         names.push_back(fmt::format("{} ({})", one.solver, to_string(one.status)));
       }
-      fmt::print("auto        {}\n", fmt::join(names, ", then "));
+      print(fmt::format("auto        {}\n", fmt::join(names, ", then ")));
     }
-    fmt::print("{}", result_text(result, options.settings.tolerance));
+    print(result_text(result, options.settings.tolerance));
   }
   write_output(options, result);
   return exit_code(result);
@@ -253,7 +265,7 @@ int run(const Options& options) {
   show_progress(fmt::format("reading {} ...", options.problem));
   const Problem problem = read_problem(options.problem);
   if (!options.json) {
-    fmt::print("problem     {}: {}\n", options.problem, problem_text(problem));
+    print(fmt::format("problem     {}: {}\n", options.problem, problem_text(problem)));
   }
   const int code = options.solver == "all" ? run_all(options, problem) : run_one(options, problem);
   if (std::fflush(stdout) != 0) {
@@ -262,8 +274,8 @@ int run(const Options& options) {
   return code;
 }
 
-int complain(int code, const std::string& what) {
-  fmt::print(stderr, "signorini-solve: {}\n", what);
+int complain(int code, std::string_view what) {
+  print_error(fmt::format("signorini-solve: {}", what));
   return code;
 }
 
