@@ -125,6 +125,9 @@ Lemke::Ending Lemke::pivot(int attempt, const Problem& problem, const Deadline& 
   if (x_.minCoeff() >= 0.0) {  // the first basis is complementary and feasible
     return finish(problem, deadline) ? Ending::kSolved : Ending::kRefused;
   }
+  if (pivots_ >= pivot_limit()) {
+    return Ending::kLimit;
+  }
   if (!enter_cover()) {
     return Ending::kRefused;
   }

@@ -5,25 +5,46 @@
 namespace signorini::lcp {
 namespace {
 
-constexpr double kNoise = 1e-9;  // of the largest entry
-constexpr double kNearInteger = 1e-7;
-constexpr int kLargestDenominator = 1000;
+constexpr double kNoise = 1e-9;              // of the largest entry
+constexpr double kRounding = 1e-14;          // relative error expected of an entry
+constexpr double kLargestDenominator = 1e9;  // integers below it survive kRounding well enough
 
-/// The integers near D y for the least D that fits; empty if none does. The largest entry of y
+/// The least d >= 1 (d <= most) for which d x is an integer up to d * error: the denominators of
+/// the continued fraction of x. 0 if there is none.
+double denominator_of(double x, double error, double most) {
+  double previous = 0.0;
+  double current = 1.0;
+  double rest = x - std::floor(x);
+  while (current <= most) {
+    if (std::abs(x - std::round(current * x) / current) <= error) {
+      return current;
+    }
+    if (rest == 0.0) {
+      return 0.0;
+    }
+    const double inverse = 1.0 / rest;
+    const double digit = std::floor(inverse);
+    rest = inverse - digit;
+    const double next = digit * current + previous;
+    previous = current;
+    current = next;
+  }
+  return 0.0;
+}
+
+/// The integers D y for a small common denominator D; empty if none fits. The largest entry of y
 /// is 1.
 Vector round_to_integers(const Vector& y) {
-  Vector integers(y.size());
-  for (int denominator = 1; denominator <= kLargestDenominator; ++denominator) {
-    bool fits = true;
-    for (Index i = 0; i < y.size() && fits; ++i) {
-      integers[i] = std::round(denominator * y[i]);
-      fits = std::abs(denominator * y[i] - integers[i]) <= kNearInteger * denominator;
+  double common = 1.0;
+  for (Index i = 0; i < y.size(); ++i) {
+    const double factor =
+        denominator_of(common * y[i], common * kRounding, kLargestDenominator / common);
+    if (factor == 0.0) {
+      return {};
     }
-    if (fits) {
-      return integers;
-    }
+    common *= factor;
   }
-  return {};
+  return (common * y).array().round();
 }
 
 }  // namespace

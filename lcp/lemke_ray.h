@@ -10,9 +10,9 @@ namespace signorini::lcp {
 ///
 /// 1. the direction with entries below 1e-9 of the largest (rounding, negative ones included) set
 ///    to 0;
-/// 2. that vector rounded to integers over one denominator D, for the least D <= 1000 for which it
-///    is within 1e-7 of such a vector: data with exact null vectors (integers, dyadics) is then
-///    proven infeasible exactly.
+/// 2. that vector rounded to integers over one denominator D <= 1e9, found entry by entry by
+///    continued fractions, where such a vector lies within rounding: data with exact null vectors
+///    (integers, dyadics) is then proven infeasible exactly.
 ///
 /// @param direction n numbers, the z-part of the ray, any positive multiple
 /// @param sharpened receives n numbers >= 0

@@ -7,7 +7,7 @@
 namespace signorini::lcp {
 namespace {
 
-constexpr int kRuizPasses = 4;
+constexpr int kRuizPasses = 8;
 constexpr double kSparseBelow = 0.25;
 constexpr int kNone = std::numeric_limits<int>::min();
 
@@ -53,30 +53,50 @@ void ScaledLcp::choose_exponents() {
       column_exponent_[i] = row_exponent_[i];
     }
   }
-  std::vector<int> row_largest(n);
-  std::vector<int> column_largest(n);
-  for (int pass = 0; pass < kRuizPasses; ++pass) {
-    std::fill(row_largest.begin(), row_largest.end(), kNone);
-    std::fill(column_largest.begin(), column_largest.end(), kNone);
-    for (int j = 0; j < n; ++j) {
-      for (int i = 0; i < n; ++i) {
-        if (const int e = exponent_of(dense_(i, j)); e != kNone) {
-          const int scaled = e + row_exponent_[i] + column_exponent_[j];
-          row_largest[i] = std::max(row_largest[i], scaled);
-          column_largest[j] = std::max(column_largest[j], scaled);
-        }
-      }
+  // Indices without a positive diagonal follow those they meet.
+  measure_largest(true);
+  for (int i = 0; i < n; ++i) {
+    if (!(dense_(i, i) > 0.0)) {
+      row_exponent_[i] -= row_largest_[i] == kNone ? 0 : row_largest_[i];
+      column_exponent_[i] -= column_largest_[i] == kNone ? 0 : column_largest_[i];
     }
+  }
+  for (int pass = 0; pass < kRuizPasses; ++pass) {
+    measure_largest(false);
     bool changed = false;
     for (int i = 0; i < n; ++i) {
-      const int row_step = row_largest[i] == kNone ? 0 : half(row_largest[i]);
-      const int column_step = column_largest[i] == kNone ? 0 : half(column_largest[i]);
+      const int row_step = row_largest_[i] == kNone ? 0 : half(row_largest_[i]);
+      const int column_step = column_largest_[i] == kNone ? 0 : half(column_largest_[i]);
       row_exponent_[i] -= row_step;
       column_exponent_[i] -= column_step;
       changed = changed || row_step != 0 || column_step != 0;
     }
     if (!changed) {
       break;
+    }
+  }
+}
+
+/// The exponents of the largest entry of every scaled row and column, kNone where all are 0.
+/// @param beside_diagonals count only the entries in the column (for a row) or row (for a column)
+/// of an index with a positive diagonal
+void ScaledLcp::measure_largest(bool beside_diagonals) {
+  const int n = size();
+  row_largest_.assign(n, kNone);
+  column_largest_.assign(n, kNone);
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) {
+      const int e = exponent_of(dense_(i, j));
+      if (e == kNone) {
+        continue;
+      }
+      const int scaled = e + row_exponent_[i] + column_exponent_[j];
+      if (!beside_diagonals || dense_(j, j) > 0.0) {
+        row_largest_[i] = std::max(row_largest_[i], scaled);
+      }
+      if (!beside_diagonals || dense_(i, i) > 0.0) {
+        column_largest_[j] = std::max(column_largest_[j], scaled);
+      }
     }
   }
 }
@@ -88,10 +108,17 @@ void ScaledLcp::apply_exponents() {
       dense_(i, j) = std::ldexp(dense_(i, j), row_exponent_[i] + column_exponent_[j]);
     }
   }
+  // Empty rows have no scale of their own: their q becomes as large as the largest of the others.
   int largest = kNone;
   for (int i = 0; i < n; ++i) {
-    if (q_[i] != 0.0) {
+    if (q_[i] != 0.0 && row_largest_[i] != kNone) {
       largest = std::max(largest, std::ilogb(q_[i]) + row_exponent_[i]);
+    }
+  }
+  for (int i = 0; i < n; ++i) {
+    if (q_[i] != 0.0 && row_largest_[i] == kNone) {
+      largest = largest == kNone ? std::ilogb(q_[i]) : largest;
+      row_exponent_[i] = largest - std::ilogb(q_[i]);
     }
   }
   q_exponent_ = largest == kNone ? 0 : -largest;

@@ -13,8 +13,9 @@ namespace signorini::lcp {
 ///
 /// R, C and s powers of two, so that the scaled problem is the caller's problem to the bit (numbers
 /// below 1e-308 of the largest excepted). Where M_ii > 0, first R_ii = C_ii ~ M_ii^-1/2, which
-/// brings a positive semidefinite M to |M'_ij| < 2; then rows and columns in turn by the root of
-/// their largest entry (Ruiz 2001), which leaves that M' as it is. s makes |q'|_inf = 1 .. 2.
+/// brings a positive semidefinite M to |M'_ij| < 2; the other indices (friction) by their largest
+/// entry beside those; then rows and columns by the root of their largest entry (Ruiz 2001), which
+/// leaves that M' as it is. s makes |q'|_inf = 1 .. 2.
 ///
 /// M' is held by columns: dense, or compressed if fewer than a quarter of its entries are non-zero.
 class ScaledLcp {
@@ -65,6 +66,7 @@ class ScaledLcp {
 
  private:
   void choose_exponents();
+  void measure_largest(bool beside_diagonals);
   void apply_exponents();
   void compress();
 
@@ -77,6 +79,8 @@ class ScaledLcp {
   std::vector<int> row_exponent_;     // R_i = 2^row_exponent_[i]
   std::vector<int> column_exponent_;  // C_j = 2^column_exponent_[j]
   int q_exponent_ = 0;                // s = 2^q_exponent_
+  std::vector<int> row_largest_;
+  std::vector<int> column_largest_;
 };
 
 }  // namespace signorini::lcp

@@ -1,0 +1,239 @@
+#include <signorini/lcp/certificate.h>
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+#include <random>
+
+namespace signorini::lcp {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kTolerance = 1e-8;
+
+Vector vector(std::initializer_list<double> values) {
+  Vector v(static_cast<Index>(values.size()));
+  Index i = 0;
+  for (const double value : values) {
+    v[i++] = value;
+  }
+  return v;
+}
+
+Problem lcp(const Matrix& M, const Vector& q) {
+  Problem problem;
+  problem.M = M;
+  problem.q = q;
+  return problem;
+}
+
+Problem two_by_two() {
+  return lcp(Matrix{{2, 1}, {1, 2}}, vector({-3, -3}));
+}
+
+Status verdict(const Problem& problem, const Vector& z) {
+  return judge(certify(problem, z), kTolerance, Status::kStalled);
+}
+
+// w = (1, -1) at z = (2, 0), D = 2: r = min(2 * 2, 1) and min(0, -1).
+TEST(Certificate, HasTheValuesOfTheHandComputedExample) {
+  Vector w;
+  const Certificate c = certify(two_by_two(), vector({2, 0}), &w);
+  EXPECT_EQ(w, vector({1, -1}));
+  EXPECT_DOUBLE_EQ(c.natural_residual, 1.0 / 4.0);
+  EXPECT_DOUBLE_EQ(c.unit_free_residual, 1.0 / 3.0);
+  EXPECT_DOUBLE_EQ(c.rounding_floor, kEpsilon * 7.0 / 3.0);
+  EXPECT_DOUBLE_EQ(c.natural_floor, kEpsilon * 7.0 / 4.0);
+  EXPECT_DOUBLE_EQ(c.backward_error, 1.0 / 5.0);  // row 1; row 0 has 1 / (4 + 7)
+  EXPECT_EQ(c.min_z, 0.0);
+  EXPECT_EQ(c.min_w, -1.0);
+  EXPECT_EQ(c.complementarity, 2.0);
+}
+
+TEST(Certificate, OfTheSolutionIsZero) {
+  const Certificate c = certify(two_by_two(), vector({1, 1}));
+  EXPECT_EQ(c.natural_residual, 0.0);
+  EXPECT_EQ(c.unit_free_residual, 0.0);
+  EXPECT_EQ(c.backward_error, 0.0);
+}
+
+TEST(Certificate, NamesTheWorstRow) {
+  const Problem problem = lcp(Matrix::Identity(3, 3), vector({-1, -5, -2}));
+  EXPECT_EQ(certify(problem, vector({1, 5, 0})).worst_row, 2);
+}
+
+TEST(Certificate, SeesANegativeZAndALargeComplementaryPair) {
+  const Problem problem = lcp(Matrix::Identity(1, 1), vector({4}));
+  EXPECT_DOUBLE_EQ(certify(problem, vector({-1})).unit_free_residual, 0.25);
+  EXPECT_DOUBLE_EQ(certify(problem, vector({2})).unit_free_residual, 0.5);  // min(2, 6) / 4
+}
+
+TEST(Certificate, UsesOneWhereTheDiagonalIsNotPositive) {
+  const Problem problem = lcp(Matrix{{0, 1}, {1, -3}}, vector({-1, 1}));
+  // w = (-1, 1) + (0, 1) at z = (1, 0)
+  EXPECT_DOUBLE_EQ(certify(problem, vector({1, 0})).unit_free_residual, 1.0);
+}
+
+TEST(Certificate, MeasuresABoxRowFromItsBounds) {
+  Problem problem = lcp(Matrix{{2}}, vector({-10}));
+  problem.lower = vector({-1});
+  problem.upper = vector({1});
+  EXPECT_EQ(certify(problem, vector({1})).unit_free_residual, 0.0);
+  const Certificate inside = certify(problem, vector({0}));
+  EXPECT_DOUBLE_EQ(inside.unit_free_residual, 0.2);  // 2 |0 - clamp(5)| / 10
+  EXPECT_DOUBLE_EQ(inside.natural_residual, 1.0 / 11.0);
+  EXPECT_DOUBLE_EQ(certify(problem, vector({3})).unit_free_residual, 0.4);
+  EXPECT_TRUE(std::isnan(inside.min_z));
+}
+
+TEST(Certificate, MeasuresAFreeRowByW) {
+  Problem problem = lcp(Matrix{{2}}, vector({3}));
+  problem.lower = vector({-kInfinity});
+  const Certificate c = certify(problem, vector({0}));
+  EXPECT_DOUBLE_EQ(c.natural_residual, 0.75);
+  EXPECT_DOUBLE_EQ(c.unit_free_residual, 1.0);
+  EXPECT_EQ(certify(problem, vector({-1.5})).unit_free_residual, 0.0);
+}
+
+TEST(Certificate, CouplesAFrictionRowToTheNormalOfTheGivenZ) {
+  Problem problem = lcp(Matrix::Identity(2, 2), vector({-2, -5}));
+  problem.limits = {{.row = 1, .normal_row = 0, .coefficient = 0.5}};
+  EXPECT_EQ(certify(problem, vector({2, 1})).unit_free_residual, 0.0);
+  EXPECT_DOUBLE_EQ(certify(problem, vector({2, 2})).unit_free_residual, 0.2);
+  // A negative normal force carries no friction: both rows are wrong, z_n by 1 + 2.
+  EXPECT_DOUBLE_EQ(certify(problem, vector({-1, 0})).unit_free_residual, 0.6);
+}
+
+TEST(Certificate, OfZeroQIsZeroForZeroAndInfiniteForAnythingWrong) {
+  const Problem problem = lcp(Matrix::Identity(2, 2), vector({0, 0}));
+  EXPECT_EQ(certify(problem, vector({0, 0})).unit_free_residual, 0.0);
+  EXPECT_EQ(certify(problem, vector({1e-30, 0})).unit_free_residual, kInfinity);
+}
+
+TEST(Certificate, OfNoRowsIsSolved) {
+  const Certificate c = certify(lcp(Matrix(0, 0), Vector(0)), Vector(0));
+  EXPECT_EQ(judge(c, kTolerance, Status::kStalled), Status::kSolved);
+  EXPECT_EQ(c.worst_row, -1);
+}
+
+TEST(Certificate, RefusesWhatIsNotFinite) {
+  for (const double bad : {std::nan(""), kInfinity, -kInfinity}) {
+    Vector w;
+    const Certificate c = certify(two_by_two(), vector({1, bad}), &w);
+    EXPECT_EQ(c.natural_residual, kInfinity);
+    EXPECT_EQ(c.unit_free_residual, kInfinity);
+    EXPECT_TRUE(w.array().isNaN().all());
+    EXPECT_EQ(judge(c, 0.5, Status::kStalled), Status::kStalled);
+  }
+  EXPECT_EQ(verdict(two_by_two(), vector({1})), Status::kStalled);
+}
+
+// (M, q, z) in other units of z and w: factors that are powers of two change no digit.
+TEST(Certificate, UnitFreeNumbersDoNotDependOnTheUnits) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  for (int trial = 0; trial < 20; ++trial) {
+    Matrix G(4, 3);
+    Vector q(4);
+    Vector z(4);
+    for (double& value : G.reshaped()) value = normal(random);
+    for (double& value : q) value = normal(random);
+    for (double& value : z) value = std::abs(normal(random));
+    const Matrix M = G * G.transpose();
+    const Certificate c = certify(lcp(M, q), z);
+    for (const auto& [z_unit, w_unit] : {std::pair{-300, 150}, {200, -250}, {480, 480}}) {
+      const Certificate scaled =
+          certify(lcp(M * std::ldexp(1.0, w_unit - z_unit), q * std::ldexp(1.0, w_unit)),
+                  z * std::ldexp(1.0, z_unit));
+      EXPECT_EQ(scaled.unit_free_residual, c.unit_free_residual);
+      EXPECT_EQ(scaled.rounding_floor, c.rounding_floor);
+      EXPECT_EQ(scaled.backward_error, c.backward_error);
+    }
+  }
+}
+
+TEST(Certificate, NeitherLiesNorRefusesFrom1e150Downto1e150) {
+  for (const double m : {1e-150, 1.0, 1e150}) {
+    for (const double s : {1e-150, 1.0, 1e150}) {
+      const Problem problem = lcp(Matrix{{m}}, vector({-s}));
+      const Certificate exact = certify(problem, vector({s / m}));
+      EXPECT_LE(exact.unit_free_residual, kEpsilon) << m << ' ' << s;
+      EXPECT_TRUE(std::isfinite(exact.rounding_floor));
+      const Certificate wrong = certify(problem, vector({0.5 * (s / m)}));
+      EXPECT_DOUBLE_EQ(wrong.unit_free_residual, 0.5) << m << ' ' << s;
+    }
+  }
+}
+
+TEST(Certificate, WrongAnswersAreNeverJudgedSolved) {
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (int trial = 0; trial < 200; ++trial) {
+    const Index n = 1 + trial % 8;
+    Matrix M(n, n);
+    for (double& value : M.reshaped()) value = uniform(random);
+    M.diagonal().array() += static_cast<double>(n) + 1.0;  // strictly diagonally dominant: P
+    Vector z(n);
+    Vector w(n);
+    for (Index i = 0; i < n; ++i) {
+      const double size = 0.1 + std::abs(uniform(random));
+      z[i] = i % 2 == 0 ? size : 0.0;
+      w[i] = i % 2 == 0 ? 0.0 : size;
+    }
+    const Problem problem = lcp(M, w - M * z);
+    ASSERT_EQ(verdict(problem, z), Status::kSolved);
+    // Diagonal dominance by 1 and |q| < 40: an error of 1e-5 in z leaves a residual above 1e-7.
+    z[trial % n] += 1e-5;
+    EXPECT_EQ(verdict(problem, z), Status::kStalled) << "trial " << trial;
+  }
+}
+
+// q.y = -2 with y = (1, 1), M y = 0: there is no solution, yet |M||z| grows without end.
+TEST(Judge, NoRoundingFloorMakesAnInfeasibleProblemSolved) {
+  const Problem problem = lcp(Matrix{{1, -1}, {-1, 1}}, vector({-1, -1}));
+  for (double t = 1.0; t < 1e300; t *= 1e3) {
+    EXPECT_EQ(verdict(problem, vector({t, t})), Status::kStalled) << t;
+  }
+}
+
+// A force balance of 1e10 kg under 1 N: rounding z costs more than 1e-8 of q.
+TEST(Judge, CallsWhatRoundingAloneSpoilsSolvedToRounding) {
+  const double third = 1.0 / 3.0;
+  const Problem problem = lcp(Matrix{{3e10, -3e10}, {-3e10, 3e10 + 1}}, vector({-1, third}));
+  const double z1 = 2.0 / 3.0;
+  const double z0 = z1 + third * 1e-10;
+  const Certificate c = certify(problem, vector({z0, z1}));
+  ASSERT_GT(c.unit_free_residual, kTolerance);
+  ASSERT_LE(c.unit_free_residual, 4.0 * c.rounding_floor);
+  EXPECT_EQ(judge(c, kTolerance, Status::kStalled), Status::kSolvedToRounding);
+  EXPECT_EQ(judge(c, 1e-3, Status::kStalled), Status::kSolved);
+}
+
+TEST(Judge, NeedsBothResiduals) {
+  Certificate c;
+  c.natural_floor = c.rounding_floor = 0.0;
+  c.natural_residual = c.unit_free_residual = kTolerance;
+  EXPECT_EQ(judge(c, kTolerance, Status::kStalled), Status::kSolved);
+  c.natural_residual = 2.0 * kTolerance;
+  EXPECT_EQ(judge(c, kTolerance, Status::kStalled), Status::kStalled);
+  c.natural_floor = kTolerance;
+  EXPECT_EQ(judge(c, kTolerance, Status::kStalled), Status::kSolvedToRounding);
+  c.unit_free_residual = 4.1 * kTolerance;
+  c.rounding_floor = kTolerance;
+  EXPECT_EQ(judge(c, kTolerance, Status::kStalled), Status::kStalled);
+  c.natural_residual = std::nan("");
+  EXPECT_EQ(judge(c, kTolerance, Status::kTimeLimit), Status::kTimeLimit);
+}
+
+TEST(Judge, HasACeilingForTheFloor) {
+  Certificate c;
+  c.natural_residual = c.unit_free_residual = 1.1e-5;
+  c.natural_floor = c.rounding_floor = kInfinity;
+  EXPECT_EQ(judge(c, kTolerance, Status::kStalled), Status::kStalled);
+  c.natural_residual = c.unit_free_residual = 0.9e-5;
+  EXPECT_EQ(judge(c, kTolerance, Status::kStalled), Status::kSolvedToRounding);
+}
+
+}  // namespace
+}  // namespace signorini::lcp
