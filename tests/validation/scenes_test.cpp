@@ -1,0 +1,179 @@
+#include <signorini/validation/builtin_scenes.h>
+#include <signorini/validation/checks.h>
+#include <signorini/validation/embedded_scenes.h>
+#include <signorini/validation/generic_checks.h>
+#include <signorini/validation/signorini_runner.h>
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+
+namespace signorini::validation {
+namespace {
+
+Scene builtin(const std::string& name) {
+  return load_builtin_scene(*find_builtin_scene(name));
+}
+
+RunOptions ours_only() {
+  RunOptions options;
+  options.bullet = false;
+  return options;
+}
+
+SceneReport checked(const std::string& name, const Scene& scene) {
+  SceneReport report;
+  find_builtin_scene(name)->check(scene, ours_only(), report);
+  return report;
+}
+
+const Check* find_check(const SceneReport& report, const std::string& words) {
+  for (const Check& check : report.checks) {
+    if (check.name.find(words) != std::string::npos) return &check;
+  }
+  return nullptr;
+}
+
+TEST(Checks, JudgeWhatTheySay) {
+  const CheckText text{.name = "x"};
+  EXPECT_EQ(absolute(text, 1.0, 1.5, 0.5).judged(), Verdict::kPass);
+  EXPECT_EQ(absolute(text, 1.0, 1.5, 0.4).judged(), Verdict::kFail);
+  EXPECT_EQ(relative(text, 90.0, 100.0, 0.1).judged(), Verdict::kPass);
+  EXPECT_EQ(relative(text, 89.0, 100.0, 0.1).judged(), Verdict::kFail);
+  EXPECT_EQ(at_most(text, -5.0, 0.0).judged(), Verdict::kPass);
+  EXPECT_EQ(at_most(text, 0.1, 0.0).judged(), Verdict::kFail);
+  EXPECT_EQ(shown(text, 1.0, 2.0).judged(), Verdict::kInformation);
+}
+
+TEST(Checks, NaNFails) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const CheckText text{.name = "x"};
+  EXPECT_EQ(absolute(text, nan, 0.0, 1.0).judged(), Verdict::kFail);
+  EXPECT_EQ(relative(text, nan, 1.0, 1.0).judged(), Verdict::kFail);
+  EXPECT_EQ(at_most(text, nan, 1.0).judged(), Verdict::kFail);
+}
+
+TEST(BuiltinScenes, EveryFileHasChecksAndEveryCheckHasAFile) {
+  EXPECT_EQ(embedded_scenes().size(), builtin_scenes().size());
+  for (const EmbeddedScene& file : embedded_scenes()) {
+    EXPECT_NE(find_builtin_scene(file.name), nullptr) << file.name;
+  }
+  for (const BuiltinScene& scene : builtin_scenes()) {
+    const Scene loaded = load_builtin_scene(scene);
+    EXPECT_FALSE(loaded.title.empty()) << scene.name;
+    EXPECT_FALSE(loaded.description.empty()) << scene.name;
+    EXPECT_FALSE(loaded.bodies.empty()) << scene.name;
+  }
+  EXPECT_EQ(find_builtin_scene("no-such-scene"), nullptr);
+}
+
+// The harness must be able to fail: each scene below is wrong in one way that its closed form does
+// not know of.
+
+TEST(HarnessCanFail, SlopeWithLessGravityThanTheClosedForm) {
+  Scene scene = builtin("slope-slide");
+  EXPECT_EQ(checked("slope-slide", scene).verdict(), Verdict::kPass);
+  scene.bodies[0].gravity_scale = 0.95;
+  EXPECT_EQ(checked("slope-slide", scene).verdict(), Verdict::kFail);
+}
+
+TEST(HarnessCanFail, StackThatIsPushed) {
+  Scene scene = builtin("stack-of-5");
+  scene.duration = 0.5;
+  set_velocity(scene.bodies[4], {Vec3(0.5, 0.0, 0.0), Vec3::Zero()}, scene.state[4]);
+  const SceneReport report = checked("stack-of-5", scene);
+  EXPECT_EQ(report.verdict(), Verdict::kFail);
+  EXPECT_EQ(find_check(report, "greatest motion")->judged(), Verdict::kFail);
+}
+
+TEST(HarnessCanFail, LandingOnAnEdge) {
+  Scene scene = builtin("box-landing-flat");
+  scene.state[0].q = Quat(Eigen::AngleAxisd(0.1, Vec3::UnitY()));
+  const SceneReport report = checked("box-landing-flat", scene);
+  EXPECT_EQ(find_check(report, "stepped: greatest |w|")->judged(), Verdict::kFail);
+}
+
+TEST(HarnessCanFail, StepWithoutASolutionIsAFailedCheck) {
+  Scene scene = builtin("ball-between-walls");
+  const SceneReport report = validate_scene(scene, ours_only());
+  EXPECT_EQ(report.verdict(), Verdict::kFail);
+  EXPECT_EQ(find_check(report, "not solved")->judged(), Verdict::kFail);
+}
+
+TEST(GenericChecks, FreeFallIsExactWhereNothingIsInTheWay) {
+  Scene scene = builtin("free-flight");
+  const SceneReport report = validate_scene(scene, ours_only());
+  EXPECT_EQ(report.verdict(), Verdict::kPass);
+  ASSERT_NE(find_check(report, "free fall"), nullptr);
+}
+
+TEST(GenericChecks, EnergyThatRisesFails) {
+  const Scene scene = builtin("free-flight");
+  Runs runs;
+  runs.signorini = run_signorini(scene, step_settings(scene));
+  SceneReport honest;
+  add_energy_check(scene, runs, honest);
+  EXPECT_EQ(honest.verdict(), Verdict::kPass);
+  runs.signorini->kinetic.back() *= 1.01;
+  SceneReport tampered;
+  add_energy_check(scene, runs, tampered);
+  EXPECT_EQ(tampered.verdict(), Verdict::kFail);
+}
+
+TEST(GenericChecks, OverlapDeeperThanAStepFails) {
+  const Scene scene = builtin("ball-drop-e0.5");
+  Runs runs;
+  runs.signorini = run_signorini(scene, step_settings(scene));
+  SceneReport honest;
+  add_overlap_check(scene, runs, honest);
+  EXPECT_EQ(honest.verdict(), Verdict::kPass);
+  runs.signorini->overlap.back() = 0.1;
+  SceneReport tampered;
+  add_overlap_check(scene, runs, tampered);
+  EXPECT_EQ(tampered.verdict(), Verdict::kFail);
+}
+
+TEST(Runs, StopFlagLeavesNoReport) {
+  const StopFlag stop{true};
+  RunOptions options;
+  options.stop = &stop;
+  EXPECT_THROW((void)validate_builtin(*find_builtin_scene("free-flight"), options), RunInterrupted);
+}
+
+TEST(Runs, EngineAndDurationAreTheCallers) {
+  RunOptions options;
+  options.signorini = false;
+  options.duration = 0.5;
+  const SceneReport report = validate_builtin(*find_builtin_scene("free-flight"), options);
+  EXPECT_EQ(report.signorini_seconds, -1.0);
+  EXPECT_GE(report.bullet_seconds, 0.0);
+  for (const Check& check : report.checks) EXPECT_EQ(check.engine, "bullet") << check.name;
+  EXPECT_EQ(report.verdict(), Verdict::kInformation);
+}
+
+/// The quick built-in scenes, whole: what the default report must show.
+class QuickScenes : public testing::TestWithParam<const char*> {};
+
+TEST_P(QuickScenes, Pass) {
+  const SceneReport report = validate_builtin(*find_builtin_scene(GetParam()), ours_only());
+  for (const Check& check : report.checks) {
+    EXPECT_NE(check.judged(), Verdict::kFail)
+        << check.name << ": " << check.value << " for " << check.expected << ", error "
+        << check.error << " > " << check.tolerance;
+  }
+  EXPECT_EQ(report.verdict(), Verdict::kPass);
+}
+
+INSTANTIATE_TEST_SUITE_P(BuiltIn, QuickScenes,
+                         testing::Values("free-flight", "ball-drop-e0", "ball-drop-e0.5",
+                                         "ball-drop-e0.9", "ball-drop-e1", "wedge",
+                                         "newtons-cradle", "ball-between-walls",
+                                         "ball-between-tilted-walls", "rod-on-two-supports"),
+                         [](const auto& info) {
+                           std::string name = info.param;
+                           for (char& c : name) c = std::isalnum(c) ? c : '_';
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace signorini::validation

@@ -1,0 +1,391 @@
+#include <signorini/validation/input_error.h>
+#include <signorini/validation/sdf_reader.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+
+namespace signorini::validation {
+namespace {
+
+using ::testing::Test;
+
+/// A world around some models.
+std::string world(const std::string& content) {
+  return "<?xml version=\"1.0\"?>\n<sdf version=\"1.9\" xmlns:signorini=\"urn:signorini\">\n"
+         "<world name=\"w\">\n" +
+         content + "\n</world></sdf>";
+}
+
+/// A model of one link with a box, and something more in the link or the collision.
+std::string box_model(const std::string& in_link, const std::string& in_collision = "",
+                      const std::string& in_model = "") {
+  return "<model name=\"brick\">" + in_model + "<link name=\"body\">" + in_link +
+         "<collision name=\"c\"><geometry><box><size>1 2 3</size></box></geometry>" + in_collision +
+         "</collision></link></model>";
+}
+
+Scene read(const std::string& content, const ReadOptions& options = {}) {
+  return read_scene_text(world(content), "test.sdf", options);
+}
+
+/// The message of the refusal; empty if there is none.
+std::string refusal(const std::string& text, const ReadOptions& options = {}) {
+  try {
+    (void)read_scene_text(text, "test.sdf", options);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+bool mentions(const Scene& scene, const std::string& words) {
+  for (const std::string& notice : scene.notices) {
+    if (notice.find(words) != std::string::npos) return true;
+  }
+  return false;
+}
+
+#define EXPECT_NAMES(text, words) EXPECT_NE((text).find(words), std::string::npos) << (text)
+
+TEST(SdfReader, BodyFrameIsTheCentreOfMass) {
+  const Scene scene =
+      read(box_model("<pose>1 0 0 0 0 1.5707963267948966</pose>"
+                     "<inertial><pose>0.5 0 0 0 0 0</pose><mass>2</mass></inertial>"));
+  ASSERT_EQ(scene.bodies.size(), 1u);
+  // The link is turned by 90 degrees about z: half a metre along its x is half a metre along y.
+  EXPECT_NEAR((scene.state[0].x - Vec3(1.0, 0.5, 0.0)).norm(), 0.0, 1e-15);
+  EXPECT_NEAR((scene.colliders[0].local.position - Vec3(-0.5, 0.0, 0.0)).norm(), 0.0, 1e-15);
+  EXPECT_EQ(scene.bodies[0].mass, 2.0);
+}
+
+TEST(SdfReader, InertiaIsTurnedIntoTheLinksAxes) {
+  const Scene scene =
+      read(box_model("<inertial><pose>0 0 0 0 0 1.5707963267948966</pose><mass>1</mass>"
+                     "<inertia><ixx>2</ixx><iyy>3</iyy><izz>4</izz></inertia></inertial>"));
+  const Mat3 expected = Vec3(3.0, 2.0, 4.0).asDiagonal();
+  EXPECT_NEAR((scene.bodies[0].inertia - expected).norm(), 0.0, 1e-15);
+}
+
+TEST(SdfReader, PosesGoThroughTheFrameGraph) {
+  const Scene scene = read("<frame name=\"shelf\"><pose>0 0 2 0 0 0</pose></frame>" +
+                           box_model("<pose relative_to=\"peg\">0 0 1 0 0 0</pose>", "",
+                                     "<pose relative_to=\"shelf\">1 0 0 0 0 0</pose>"
+                                     "<frame name=\"peg\"><pose>0 3 0 0 0 0</pose></frame>"));
+  EXPECT_NEAR((scene.state[0].x - Vec3(1.0, 3.0, 3.0)).norm(), 0.0, 1e-15);
+}
+
+TEST(SdfReader, ReadsTheNamespacedElements) {
+  const Scene scene = read(
+      "<signorini:duration>7.5</signorini:duration><signorini:title>A  title</signorini:title>"
+      "<signorini:pairing>multiply</signorini:pairing>" +
+      box_model("<signorini:linear_velocity>1 2 3</signorini:linear_velocity>"
+                "<signorini:angular_velocity>0 0 4</signorini:angular_velocity>"));
+  EXPECT_EQ(scene.duration, 7.5);
+  EXPECT_EQ(scene.title, "A title");
+  EXPECT_EQ(scene.rule, PairingRule::kMultiply);
+  const Velocity v = velocity(scene.bodies[0], scene.state[0]);
+  EXPECT_NEAR((v.linear - Vec3(1.0, 2.0, 3.0)).norm(), 0.0, 1e-15);
+  EXPECT_NEAR((v.angular - Vec3(0.0, 0.0, 4.0)).norm(), 0.0, 1e-15);
+}
+
+TEST(SdfReader, WithoutPhysicsTheDefaultsAreSdformats) {
+  const Scene scene = read(box_model(""));
+  EXPECT_EQ(scene.step, 0.001);
+  EXPECT_EQ(scene.gravity, Vec3(0.0, 0.0, -9.8));
+  EXPECT_EQ(scene.duration, 5.0);
+  EXPECT_TRUE(mentions(scene, "has no <inertial>"));
+}
+
+TEST(SdfReader, ReadsGravityStepAndSurfaces) {
+  const Scene scene = read(
+      "<gravity>0 1 -2</gravity><physics "
+      "type=\"ode\"><max_step_size>0.01</max_step_size></physics>" +
+      box_model(
+          "<gravity>false</gravity>",
+          "<surface><friction><ode><mu>0.25</mu><mu2>0.25</mu2></ode></friction>"
+          "<bounce><restitution_coefficient>0.75</restitution_coefficient></bounce></surface>"));
+  EXPECT_EQ(scene.gravity, Vec3(0.0, 1.0, -2.0));
+  EXPECT_EQ(scene.step, 0.01);
+  EXPECT_EQ(scene.bodies[0].gravity_scale, 0.0);
+  EXPECT_EQ(scene.colliders[0].material.friction, 0.25);
+  EXPECT_EQ(scene.colliders[0].material.restitution, 0.75);
+  EXPECT_FALSE(mentions(scene, "ignored physics"));
+}
+
+TEST(SdfReader, PlaneIsAHalfSpaceWithItsNormal) {
+  const Scene scene = read(
+      "<model name=\"wall\"><static>true</static><link name=\"l\"><collision name=\"c\">"
+      "<geometry><plane><normal>3 0 4</normal><size>1 1</size></plane></geometry></collision>"
+      "</link></model>");
+  ASSERT_TRUE(std::holds_alternative<collision::HalfSpace>(scene.colliders[0].shape));
+  const Vec3 normal = scene.colliders[0].local.orientation * Vec3::UnitZ();
+  EXPECT_NEAR((normal - Vec3(0.6, 0.0, 0.8)).norm(), 0.0, 1e-15);
+  EXPECT_EQ(scene.bodies[0].kind, BodyKind::kFixed);
+  EXPECT_TRUE(mentions(scene, "<plane><size> ignored"));
+}
+
+TEST(SdfReader, LinksOfOneModelCollideOnlyIfTheySaySo) {
+  const auto two_links = [](const std::string& flag) {
+    return read("<model name=\"m\">" + flag + "<link name=\"a\"/><link name=\"b\"/></model>");
+  };
+  EXPECT_EQ(two_links("").never_collide.size(), 1u);
+  EXPECT_EQ(two_links("<self_collide>true</self_collide>").never_collide.size(), 0u);
+}
+
+TEST(SdfReader, NothingIsIgnoredSilently) {
+  const Scene scene = read(
+      "<light name=\"sun\" type=\"directional\"/>" +
+      box_model(
+          "<visual name=\"v\"><geometry><cylinder><radius>1</radius><length>1</length>"
+          "</cylinder></geometry></visual><velocity_decay><linear>0.1</linear></velocity_decay>",
+          "<surface><friction><ode><mu>0.5</mu><mu2>0.3</mu2><slip1>0.01</slip1></ode>"
+          "</friction><contact><ode><kp>1e5</kp></ode></contact></surface>"));
+  EXPECT_TRUE(mentions(scene, "light (1)"));
+  EXPECT_TRUE(mentions(scene, "visual (1)"));
+  EXPECT_TRUE(mentions(scene, "velocity_decay/linear"));
+  EXPECT_TRUE(mentions(scene, "mu2 = 0.3 beside mu = 0.5"));
+  EXPECT_TRUE(mentions(scene, "surface/friction/ode/slip1"));
+  EXPECT_TRUE(mentions(scene, "surface/contact/ode/kp"));
+}
+
+struct BadInput {
+  const char* name;
+  std::string content;
+  std::vector<std::string> names;  ///< what the message must hold
+};
+
+class SdfReaderRefuses : public testing::TestWithParam<BadInput> {};
+
+TEST_P(SdfReaderRefuses, AndNamesFileAndField) {
+  const std::string message = refusal(world(GetParam().content));
+  ASSERT_FALSE(message.empty()) << "was accepted";
+  EXPECT_NAMES(message, "test.sdf:");
+  for (const std::string& words : GetParam().names) EXPECT_NAMES(message, words);
+}
+
+std::string inertial(const std::string& content) {
+  return box_model("<inertial>" + content + "</inertial>");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    BadInput, SdfReaderRefuses,
+    testing::Values(
+        BadInput{"negative_mass", inertial("<mass>-1</mass>"), {"link 'body'", "<mass>", "-1"}},
+        BadInput{"nan_mass", inertial("<mass>nan</mass>"), {"link 'body'", "<mass>", "nan"}},
+        BadInput{"text_for_mass", inertial("<mass>heavy</mass>"), {"<mass>", "heavy"}},
+        BadInput{"triangle_inequality",
+                 inertial("<mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>3</izz></inertia>"),
+                 {"link 'body'", "<inertial>", "triangle inequality"}},
+        BadInput{"infinite_inertia",
+                 inertial("<inertia><ixx>inf</ixx><iyy>1</iyy><izz>1</izz></inertia>"),
+                 {"link 'body'", "<ixx>", "inf"}},
+        BadInput{"short_pose", box_model("<pose>1 2</pose>"), {"<pose>", "6 numbers"}},
+        BadInput{"nan_pose", box_model("<pose>1 2 nan 0 0 0</pose>"), {"<pose>", "nan"}},
+        BadInput{
+            "negative_size",
+            "<model name=\"m\"><link name=\"l\"><collision name=\"c\"><geometry><box><size>1 1 -1"
+            "</size></box></geometry></collision></link></model>",
+            {"model 'm'", "collision 'c'", "<size>", "-1"}},
+        BadInput{
+            "zero_radius",
+            "<model name=\"m\"><link name=\"l\"><collision name=\"c\"><geometry><sphere><radius>0"
+            "</radius></sphere></geometry></collision></link></model>",
+            {"<radius>", "> 0"}},
+        BadInput{
+            "zero_normal",
+            "<model name=\"m\"><static>true</static><link name=\"l\"><collision name=\"c\">"
+            "<geometry><plane><normal>0 0 0</normal></plane></geometry></collision></link></model>",
+            {"<normal>", "zero"}},
+        BadInput{"negative_friction",
+                 box_model("", "<surface><friction><ode><mu>-0.1</mu></ode></friction></surface>"),
+                 {"<mu>", "-0.1", ">= 0"}},
+        BadInput{"restitution_above_one",
+                 box_model("",
+                           "<surface><bounce><restitution_coefficient>1.5"
+                           "</restitution_coefficient></bounce></surface>"),
+                 {"<restitution_coefficient>", "[0, 1]", "1.5"}},
+        BadInput{"zero_step",
+                 "<physics type=\"ode\"><max_step_size>0</max_step_size></physics>" + box_model(""),
+                 {"<max_step_size>", "> 0"}},
+        BadInput{"unknown_extension",
+                 box_model("<signorini:speed>1</signorini:speed>"),
+                 {"link 'body'", "<signorini:speed>"}},
+        BadInput{"extension_in_the_wrong_place",
+                 "<signorini:linear_velocity>1 0 0</signorini:linear_velocity>" + box_model(""),
+                 {"<signorini:linear_velocity>", "<world>"}},
+        BadInput{"velocity_of_a_static_link",
+                 box_model("<signorini:linear_velocity>1 0 0</signorini:linear_velocity>", "",
+                           "<static>true</static>"),
+                 {"link 'body'", "static"}},
+        BadInput{"unknown_pairing",
+                 "<signorini:pairing>sum</signorini:pairing>" + box_model(""),
+                 {"<signorini:pairing>", "sum"}},
+        BadInput{"unknown_frame",
+                 box_model("<pose relative_to=\"nowhere\">0 0 0 0 0 0</pose>"),
+                 {"nowhere"}}),
+    [](const auto& info) { return info.param.name; });
+
+class SdfReaderShapes : public testing::TestWithParam<const char*> {};
+
+std::string shape_model(const std::string& shape) {
+  return box_model("") + "<model name=\"odd\"><link name=\"l\"><collision name=\"c\"><geometry><" +
+         shape + "/></geometry></collision></link></model>";
+}
+
+TEST_P(SdfReaderShapes, AreNamedOrSkippedWithANotice) {
+  const std::string shape = GetParam();
+  const std::string message = refusal(world(shape_model(shape)));
+  EXPECT_NAMES(message, "test.sdf:");
+  EXPECT_NAMES(message, "model 'odd', link 'l', collision 'c'");
+  EXPECT_NAMES(message, "<" + shape + "> is not supported");
+
+  const Scene scene = read(shape_model(shape), {.skip_unsupported = true});
+  EXPECT_EQ(scene.bodies.size(), 1u) << "a body without its last shape is left out";
+  EXPECT_TRUE(mentions(scene, "skipped: test.sdf:"));
+  EXPECT_TRUE(mentions(scene, "'odd' has no supported shape left"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Unsupported, SdfReaderShapes,
+                         testing::Values("cylinder", "capsule", "ellipsoid", "mesh", "heightmap",
+                                         "cone", "polyline"));
+
+TEST(SdfReader, JointsAreNamedOrSkipped) {
+  const std::string content =
+      "<model name=\"arm\"><link name=\"a\"/><link name=\"b\"/>"
+      "<joint name=\"elbow\" type=\"revolute\"><parent>a</parent><child>b</child>"
+      "<axis><xyz>0 0 1</xyz></axis></joint></model>";
+  const std::string message = refusal(world(content));
+  EXPECT_NAMES(message, "model 'arm', joint 'elbow'");
+  EXPECT_NAMES(message, "<joint type=\"revolute\"> is not supported");
+  EXPECT_TRUE(mentions(read(content, {.skip_unsupported = true}), "joint 'elbow'"));
+}
+
+TEST(SdfReader, DynamicPlaneIsRefused) {
+  EXPECT_NAMES(refusal(world("<model name=\"m\"><link name=\"l\"><collision name=\"c\"><geometry>"
+                             "<plane/></geometry></collision></link></model>")),
+               "static models only");
+}
+
+TEST(SdfReader, MalformedXmlNamesTheLine) {
+  EXPECT_NAMES(refusal("<sdf version='1.9'>\n<world name='w'>\n</sdf>"), "test.sdf:");
+  EXPECT_NAMES(refusal("<sdf version='1.9'>\n<world name='w'>\n</sdf>"), "not well-formed XML");
+  EXPECT_NAMES(refusal("<html/>"), "got <html>");
+  EXPECT_NAMES(refusal(""), "not well-formed XML");
+}
+
+TEST(SdfReader, MissingFileIsNamed) {
+  try {
+    (void)read_scene_file("/no/such/scene.sdf");
+    FAIL() << "was accepted";
+  } catch (const InputError& error) {
+    EXPECT_NAMES(std::string(error.what()), "/no/such/scene.sdf: cannot be read");
+  }
+}
+
+std::string robot(const std::string& in_link) {
+  return "<robot name=\"r\"><link name=\"base\"><inertial><mass value=\"2\"/>"
+         "<inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial>" +
+         in_link + "</link></robot>";
+}
+
+TEST(UrdfReader, ReadsBulletsContactValuesAndNamesTheRest) {
+  const Scene scene =
+      read_scene_text(robot("<contact><restitution value=\"0.5\"/><lateral_friction value=\"0.9\"/>"
+                            "<rolling_friction value=\"0.1\"/></contact>"
+                            "<collision><geometry><sphere radius=\"0.5\"/></geometry></collision>"),
+                      "test.urdf");
+  ASSERT_EQ(scene.colliders.size(), 1u);
+  EXPECT_EQ(scene.colliders[0].material.restitution, 0.5);
+  EXPECT_EQ(scene.colliders[0].material.friction, 0.9);
+  EXPECT_EQ(scene.bodies[0].mass, 2.0);
+  EXPECT_TRUE(mentions(scene, "<rolling_friction>"));
+  EXPECT_TRUE(mentions(scene, "a model without a world"));
+}
+
+TEST(UrdfReader, GroundIsAddedOnRequestAndSaid) {
+  const std::string text =
+      robot("<collision><geometry><box size=\"1 1 1\"/></geometry></collision>");
+  EXPECT_EQ(read_scene_text(text, "test.urdf").bodies.size(), 1u);
+  const Scene scene = read_scene_text(text, "test.urdf", {.ground = -1.0});
+  ASSERT_EQ(scene.bodies.size(), 2u);
+  EXPECT_EQ(scene.bodies[1].kind, BodyKind::kFixed);
+  EXPECT_EQ(scene.colliders[1].local.position.z(), -1.0);
+  EXPECT_TRUE(mentions(scene, "added: a fixed half-space"));
+}
+
+TEST(UrdfReader, UnsupportedShapesAndBadNumbersAreNamed) {
+  const auto urdf_refusal = [](const std::string& text) { return refusal(text); };
+  const std::string capsule = urdf_refusal(
+      robot("<collision><geometry><capsule radius=\"1\" length=\"1\"/></geometry></collision>"));
+  EXPECT_NAMES(capsule, "link 'base'");
+  EXPECT_NAMES(capsule, "<capsule> is not supported");
+  EXPECT_NAMES(urdf_refusal("<robot name=\"r\"><link name=\"base\"><inertial><mass value=\"-2\"/>"
+                            "</inertial></link></robot>"),
+               "<mass value>");
+}
+
+/// What each file of the shared scenes is: bodies, or the element that is not supported.
+struct SharedFile {
+  const char* name;
+  int bodies;  ///< -1: refused
+  const char* unsupported = "";
+};
+
+class SharedScenes : public testing::TestWithParam<SharedFile> {};
+
+TEST_P(SharedScenes, LoadOrNameTheUnsupportedElement) {
+  const std::string folder = std::string(SIGNORINI_SHARED_DIR) + "/data/scenes/";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "../shared is absent";
+  const std::string file = folder + GetParam().name;
+  if (GetParam().bodies >= 0) {
+    const Scene scene = read_scene_file(file);
+    EXPECT_EQ(static_cast<int>(scene.bodies.size()), GetParam().bodies);
+    return;
+  }
+  try {
+    (void)read_scene_file(file);
+    FAIL() << "was accepted";
+  } catch (const InputError& error) {
+    EXPECT_NAMES(std::string(error.what()), GetParam().name);
+    EXPECT_NAMES(std::string(error.what()),
+                 std::string("<") + GetParam().unsupported + "> is not supported");
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SharedScenes,
+                         testing::Values(SharedFile{"bullet_block.urdf", 1},
+                                         SharedFile{"bullet_capsule.urdf", -1, "capsule"},
+                                         SharedFile{"bullet_cube_small.urdf", 1},
+                                         SharedFile{"bullet_sphere_with_restitution.urdf", 1},
+                                         SharedFile{"bullet_two_cubes.sdf", 3},
+                                         SharedFile{"gz-physics_contact.sdf", 5},
+                                         SharedFile{"gz-physics_falling.world", 3},
+                                         SharedFile{"gz-physics_multiple_collisions.sdf", 2},
+                                         SharedFile{"gz-physics_shapes.world", -1, "cylinder"},
+                                         SharedFile{"gz-physics_slip_compliance.sdf", 2},
+                                         SharedFile{"gz-sim_3k_shapes.sdf", -1, "cylinder"},
+                                         SharedFile{"gz-sim_falling.sdf", 2},
+                                         SharedFile{"gz-sim_friction.sdf", 4},
+                                         SharedFile{"gz-sim_rolling_shapes.sdf", -1, "cylinder"},
+                                         SharedFile{"gz-sim_shapes.sdf", -1, "cylinder"}),
+                         [](const auto& info) {
+                           std::string name = info.param.name;
+                           for (char& c : name)
+                             c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+                           return name;
+                         });
+
+TEST(SharedScenesList, IsWhole) {
+  const std::filesystem::path folder = std::string(SIGNORINI_SHARED_DIR) + "/data/scenes";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "../shared is absent";
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    files += entry.path().extension() != ".md" ? 1 : 0;
+  }
+  EXPECT_EQ(files, 15) << "a scene that no test above names";
+}
+
+}  // namespace
+}  // namespace signorini::validation

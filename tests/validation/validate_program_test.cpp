@@ -1,0 +1,151 @@
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/wait.h>
+
+namespace {
+
+struct Outcome {
+  int exit_code;
+  std::string output;  ///< stdout and stderr
+};
+
+Outcome shell(const std::string& command) {
+  std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+  std::string output;
+  std::array<char, 4096> buffer;
+  while (std::fgets(buffer.data(), buffer.size(), pipe) != nullptr) output += buffer.data();
+  const int status = pclose(pipe);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, output};
+}
+
+class Program : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::path(testing::TempDir()) /
+              (std::string("signorini-validate-") +
+               testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  Outcome run(const std::string& arguments, const std::string& prefix = "") {
+    return shell(prefix + SIGNORINI_VALIDATE " --out '" + out() + "' " + arguments);
+  }
+  std::string out() const { return (folder_ / "report").string(); }
+  nlohmann::json report() const {
+    std::ifstream file(out() + "/report.json");
+    return nlohmann::json::parse(file);
+  }
+  std::string write(const std::string& name, const std::string& text) const {
+    const std::string path = (folder_ / name).string();
+    std::ofstream(path) << text;
+    return path;
+  }
+
+  std::filesystem::path folder_;
+};
+
+const char* const kBallOnPlane =
+    "<sdf version='1.9'><world name='w'><model name='ball'><pose>0 0 0.6 0 0 0</pose>"
+    "<link name='l'><inertial><mass>1</mass></inertial><collision name='c'><geometry><sphere>"
+    "<radius>0.5</radius></sphere></geometry></collision></link></model>"
+    "<model name='ground'><static>true</static><link name='l'><collision name='c'><geometry>"
+    "<plane/></geometry></collision></link></model></world></sdf>";
+
+TEST_F(Program, GoodSceneEndsWithZeroAndAReport) {
+  const std::string scene = write("ball.sdf", kBallOnPlane);
+  const Outcome outcome = run("--duration 0.2 '" + scene + "'");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_TRUE(std::filesystem::exists(out() + "/report.md"));
+  EXPECT_FALSE(report()["partial"].get<bool>());
+  EXPECT_EQ(outcome.output.find('\r'), std::string::npos) << "no control codes in a log";
+  EXPECT_EQ(outcome.output.find('\x1b'), std::string::npos);
+}
+
+TEST_F(Program, FailedCheckEndsWithOne) {
+  // A ball between two opposite walls: no step has a solution with e = 1.
+  const std::string wall =
+      "<collision name='c'><geometry><plane><normal>%s</normal></plane></geometry>"
+      "<surface><bounce><restitution_coefficient>1</restitution_coefficient>"
+      "</bounce></surface></collision>";
+  const auto model = [&](const std::string& name, const std::string& x, const std::string& normal) {
+    std::string text = wall;
+    text.replace(text.find("%s"), 2, normal);
+    return "<model name='" + name + "'><static>true</static><pose>" + x + " 0 0 0 0 0</pose>" +
+           "<link name='l'>" + text + "</link></model>";
+  };
+  const std::string scene = write(
+      "walls.sdf",
+      "<sdf version='1.9' xmlns:signorini='urn:signorini'><world name='w'><gravity>0 0 0</gravity>"
+      "<model name='ball'><link name='l'><inertial><mass>1</mass></inertial>"
+      "<signorini:linear_velocity>1 0 0</signorini:linear_velocity>"
+      "<collision name='c'><geometry><sphere><radius>0.5</radius></sphere></geometry>"
+      "<surface><bounce><restitution_coefficient>1</restitution_coefficient></bounce></surface>"
+      "</collision></link></model>" +
+          model("left", "-0.5", "1 0 0") + model("right", "0.5", "-1 0 0") + "</world></sdf>");
+  const Outcome outcome = run("--duration 0.01 --engine signorini '" + scene + "'");
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.output;
+  EXPECT_NE(outcome.output.find("failed: steps whose contact problem was not solved"),
+            std::string::npos)
+      << outcome.output;
+}
+
+TEST_F(Program, BadUsageEndsWith64) {
+  EXPECT_EQ(run("--no-such-option").exit_code, 64);
+  EXPECT_EQ(run("--engine ode").exit_code, 64);
+  EXPECT_EQ(run("--duration -1").exit_code, 64);
+}
+
+TEST_F(Program, BadSceneEndsWith65AndWritesNothing) {
+  const Outcome missing = run("/no/such/file.sdf");
+  EXPECT_EQ(missing.exit_code, 65);
+  EXPECT_NE(missing.output.find("/no/such/file.sdf: cannot be read"), std::string::npos);
+  std::string cylinder = kBallOnPlane;
+  cylinder.replace(cylinder.find("<sphere>"), 8, "<cylinder><length>1</length>");
+  cylinder.replace(cylinder.find("</sphere>"), 9, "</cylinder>");
+  const std::string scene = write("cylinder.sdf", cylinder);
+  const Outcome unsupported = run("'" + scene + "'");
+  EXPECT_EQ(unsupported.exit_code, 65);
+  EXPECT_NE(unsupported.output.find("<cylinder> is not supported"), std::string::npos);
+  EXPECT_NE(unsupported.output.find("model 'ball', link 'l', collision 'c'"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(out()));
+  EXPECT_EQ(run("--skip-unsupported --duration 0.01 '" + scene + "'").exit_code, 0);
+}
+
+TEST_F(Program, BuiltinSceneByName) {
+  const Outcome outcome = run("wedge");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_EQ(report()["scenes"].size(), 1u);
+  EXPECT_EQ(report()["scenes"][0]["command"], "signorini-validate wedge");
+}
+
+TEST_F(Program, ListNamesTheBuiltinScenes) {
+  const Outcome outcome = run("--list");
+  EXPECT_EQ(outcome.exit_code, 0);
+  for (const char* name : {"wedge", "ball-drop-e0.5", "torque-free-spin", "stack-of-5"}) {
+    EXPECT_NE(outcome.output.find(name), std::string::npos) << name;
+  }
+  EXPECT_FALSE(std::filesystem::exists(out()));
+}
+
+TEST_F(Program, InterruptLeavesAValidPartialReport) {
+  // The first scene takes ten steps, the second would run for hours.
+  const std::string quick = write(
+      "quick.sdf",
+      "<sdf version='1.9'><world name='w'><physics type='ode'><max_step_size>1e4</max_step_size>"
+      "</physics><model name='m'><link name='l'/></model></world></sdf>");
+  const std::string slow = write("slow.sdf", kBallOnPlane);
+  const Outcome outcome = run("--engine signorini --duration 1e5 '" + quick + "' '" + slow + "'",
+                              "timeout --preserve-status -s INT 3 ");
+  EXPECT_EQ(outcome.exit_code, 130) << outcome.output;
+  EXPECT_EQ(report()["scenes"].size(), 1u);
+  EXPECT_TRUE(report()["partial"].get<bool>());
+}
+
+}  // namespace

@@ -1,0 +1,79 @@
+#include <signorini/validation/builtin_scenes.h>
+#include <signorini/validation/embedded_scenes.h>
+#include <signorini/validation/generic_checks.h>
+#include <signorini/validation/sdf_reader.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace signorini::validation {
+namespace {
+
+constexpr BuiltinScene kScenes[] = {
+    {"free-flight", check_free_flight},
+    {"torque-free-spin", check_torque_free_spin},
+    {"ball-drop-e0", check_ball_drop},
+    {"ball-drop-e0.5", check_ball_drop},
+    {"ball-drop-e0.9", check_ball_drop},
+    {"ball-drop-e1", check_ball_drop},
+    {"wedge", check_wedge},
+    {"box-landing-flat", check_box_landing},
+    {"slope-stick", check_slope},
+    {"slope-slide", check_slope},
+    {"stack-of-5", check_stack},
+    {"newtons-cradle", check_newtons_cradle},
+    {"ball-between-walls", check_ball_between_walls},
+    {"ball-between-tilted-walls", check_ball_between_walls},
+    {"rod-on-two-supports", check_rod_on_supports},
+    {"mass-ratio-1000", check_mass_ratio},
+};
+
+SceneReport start_report(const Scene& scene) {
+  SceneReport report;
+  report.name = scene.name;
+  report.title = scene.title;
+  report.description = scene.description;
+  report.source = scene.source;
+  report.notices = scene.notices;
+  return report;
+}
+
+}  // namespace
+
+std::span<const BuiltinScene> builtin_scenes() {
+  return kScenes;
+}
+
+const BuiltinScene* find_builtin_scene(std::string_view name) {
+  const auto found = std::find_if(std::begin(kScenes), std::end(kScenes),
+                                  [name](const BuiltinScene& scene) { return scene.name == name; });
+  return found == std::end(kScenes) ? nullptr : &*found;
+}
+
+Scene load_builtin_scene(const BuiltinScene& builtin) {
+  for (const EmbeddedScene& embedded : embedded_scenes()) {
+    if (embedded.name != builtin.name) continue;
+    const std::string name(builtin.name);
+    Scene scene = read_scene_text(std::string(embedded.text), "validation/scenes/" + name + ".sdf");
+    scene.name = name;
+    return scene;
+  }
+  throw std::logic_error("no scene file for " + std::string(builtin.name));
+}
+
+SceneReport validate_builtin(const BuiltinScene& builtin, const RunOptions& options) {
+  Scene scene = load_builtin_scene(builtin);
+  scene.duration = options.duration.value_or(scene.duration);
+  SceneReport report = start_report(scene);
+  builtin.check(scene, options, report);
+  return report;
+}
+
+SceneReport validate_scene(Scene scene, const RunOptions& options) {
+  scene.duration = options.duration.value_or(scene.duration);
+  SceneReport report = start_report(scene);
+  check_generic(scene, options, report);
+  return report;
+}
+
+}  // namespace signorini::validation

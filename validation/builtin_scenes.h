@@ -1,0 +1,44 @@
+#pragma once
+
+#include <signorini/validation/report.h>
+#include <signorini/validation/scene_run.h>
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace signorini::validation {
+
+/// A scene of this repository: a file in validation/scenes and the checks that know its closed
+/// form.
+struct BuiltinScene {
+  std::string_view name;  ///< of the file, without .sdf
+  void (*check)(const Scene& scene, const RunOptions& options, SceneReport& report);
+};
+
+/// All of them, in the order of the report.
+[[nodiscard]] std::span<const BuiltinScene> builtin_scenes();
+/// Null if there is none of that name.
+[[nodiscard]] const BuiltinScene* find_builtin_scene(std::string_view name);
+/// The scene as its file says. @throws InputError if the file is wrong, which a test excludes.
+[[nodiscard]] Scene load_builtin_scene(const BuiltinScene& builtin);
+
+/// Runs a built-in scene and fills its report. @throws RunInterrupted
+[[nodiscard]] SceneReport validate_builtin(const BuiltinScene& builtin, const RunOptions& options);
+/// Runs a scene from outside under the generic checks. @throws RunInterrupted
+[[nodiscard]] SceneReport validate_scene(Scene scene, const RunOptions& options);
+
+// The checks, one scene family a file in validation/scenes/. Each documents its closed forms.
+void check_free_flight(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_torque_free_spin(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_ball_drop(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_wedge(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_box_landing(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_slope(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_stack(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_mass_ratio(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_newtons_cradle(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_ball_between_walls(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_rod_on_supports(const Scene& scene, const RunOptions& options, SceneReport& report);
+
+}  // namespace signorini::validation

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <signorini/collision/shape.h>
+#include <signorini/core/model/body.h>
+#include <signorini/core/model/material.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace signorini::validation {
+
+/// What is simulated, whoever simulates it. Plain data; SI units, world axes.
+struct Scene {
+  std::string name;         ///< short, usable in a file name
+  std::string title;        ///< for people
+  std::string description;  ///< a paragraph
+  std::string source;       ///< the file, or what stands for it
+  Bodies bodies;
+  State state;  ///< at t = 0
+  std::vector<collision::Collider> colliders;
+  /// Pairs of bodies whose contacts do not exist (first < second, sorted): links of one model
+  /// without self_collide.
+  std::vector<std::pair<int, int>> never_collide;
+  Vec3 gravity = Vec3(0.0, 0.0, -9.8);  ///< m/s^2, SDFormat's default
+  double step = 0.001;                  ///< s, > 0, SDFormat's default
+  double duration = 5.0;                ///< s, > 0
+  /// Gazebo's rule for friction and restitution.
+  PairingRule rule = PairingRule::kMinimum;
+  std::vector<std::string> notices;  ///< what of the file a run ignores
+
+  /// Steps that cover the duration: the nearest whole number to duration / step, at least 1.
+  [[nodiscard]] long step_count() const;
+  /// The index of the body with this name. @throws std::out_of_range naming it.
+  [[nodiscard]] int body(const std::string& body_name) const;
+};
+
+/// Checks the whole scene. @throws InputError naming the scene, the body or collider and the field.
+void validate(const Scene& scene);
+
+/// The material of every kind of pair that can touch, one line a distinct value:
+/// "friction 0.5, restitution 0 (ball / ground, and 3 more pairs)".
+[[nodiscard]] std::vector<std::string> describe_pairs(const Scene& scene);
+
+[[nodiscard]] std::string to_string(PairingRule rule);
+
+}  // namespace signorini::validation

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <signorini/collision/collision_world.h>
+#include <signorini/validation/scene.h>
+
+namespace signorini::validation {
+
+/// The contacts of a scene: its colliders, without the pairs that never collide.
+class SceneContacts final : public ContactFinder {
+ public:
+  explicit SceneContacts(const Scene& scene);
+
+  void find(const State& state, double margin, ContactSet& contacts) override;
+  /// @throws std::logic_error if the scene has pairs that never collide: their contact times would
+  /// have to be left out, and no stepper used here asks for contact times.
+  [[nodiscard]] std::optional<FirstContact> first_contact(std::span<const Motion* const> motions,
+                                                          double duration) override;
+
+ private:
+  collision::CollisionWorld world_;
+  std::vector<std::pair<int, int>> never_collide_;
+};
+
+/// Overlap of a state, measured the same way for every engine.
+struct OverlapMeasure {
+  double deepest = 0.0;  ///< max(0, -gap), m
+  int contacts = 0;      ///< with gap <= 0
+};
+[[nodiscard]] OverlapMeasure measure_overlap(SceneContacts& contacts, const State& state);
+
+}  // namespace signorini::validation

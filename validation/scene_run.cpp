@@ -1,0 +1,133 @@
+#include <signorini/validation/bullet_runner.h>
+#include <signorini/validation/checks.h>
+#include <signorini/validation/scene_run.h>
+#include <signorini/validation/signorini_runner.h>
+
+#include <fmt/format.h>
+
+namespace signorini::validation {
+namespace {
+
+void append(const std::vector<std::string>& from, std::vector<std::string>& to) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+std::string endings_text(const Track& track) {
+  std::string line;
+  for (const auto& [status, count] : track.endings) {
+    line += fmt::format("{}{} {}", line.empty() ? "" : ", ", count, status);
+  }
+  return line;
+}
+
+void check_every_step(const Track& track, UnsolvedSteps unsolved, SceneReport& report) {
+  report.settings.push_back(fmt::format("Signorini: {} steps: {}; LCP solver {:.3g} s of {:.3g} s",
+                                        track.steps, endings_text(track), track.solver_seconds,
+                                        track.wall_seconds));
+  const CheckText text{.name = "steps whose contact problem was not solved",
+                       .reference = "certificate",
+                       .unit = "1",
+                       .reason = "every step's LCP must be certified" +
+                                 (track.first_unsolved.empty()
+                                      ? ""
+                                      : "; the first that was not: " + track.first_unsolved)};
+  const auto count = static_cast<double>(track.unsolved_steps);
+  report.checks.push_back(unsolved == UnsolvedSteps::kFail ? at_most(text, count, 0.0)
+                                                           : shown(text, count, 0.0));
+  report.checks.push_back(at_most({.name = "position projections that were not solved",
+                                   .reference = "certificate",
+                                   .unit = "1",
+                                   .reason = "without them overlap stays"},
+                                  static_cast<double>(track.unsolved_projections), 0.0));
+  report.checks.push_back(at_most({.name = "runs that ended with a number that is not finite",
+                                   .reference = "definition",
+                                   .unit = "1",
+                                   .reason = "no NaN and no infinity"},
+                                  track.broke_down ? 1.0 : 0.0, 0.0));
+}
+
+Series series_of(const Track& track, const Measure& measure) {
+  Series series;
+  series.name = track.engine;
+  series.engine = track.engine;
+  series.x = track.time;
+  series.y.reserve(track.size());
+  for (std::size_t k = 0; k < track.size(); ++k) series.y.push_back(measure(track, k));
+  return series;
+}
+
+}  // namespace
+
+Track run_ours(const Scene& scene, const TimeStepSettings& settings, const RunOptions& options) {
+  Track track = run_signorini(scene, settings, options.stop);
+  if (track.interrupted) throw RunInterrupted{};
+  return track;
+}
+
+Track run_theirs(const Scene& scene, const BulletProfile& profile, const RunOptions& options) {
+  Track track = run_bullet(scene, profile, options.stop);
+  if (track.interrupted) throw RunInterrupted{};
+  return track;
+}
+
+Runs run_engines(const Scene& scene, const RunOptions& options, SceneReport& report,
+                 UnsolvedSteps unsolved) {
+  Runs runs;
+  report.settings.push_back(fmt::format("{:.9g} s in {} steps; pairing rule: {}", scene.duration,
+                                        scene.step_count(), to_string(scene.rule)));
+  append(describe_pairs(scene), report.settings);
+  if (options.signorini) {
+    const TimeStepSettings settings = step_settings(scene);
+    append(describe(settings), report.settings);
+    runs.signorini = run_ours(scene, settings, options);
+    report.signorini_seconds = runs.signorini->wall_seconds;
+    check_every_step(*runs.signorini, unsolved, report);
+  }
+  if (options.bullet) {
+    append(options.profile.describe(), report.settings);
+    runs.bullet = run_theirs(scene, options.profile, options);
+    report.bullet_seconds = runs.bullet->wall_seconds;
+    if (runs.bullet->broke_down) {
+      report.notices.push_back(fmt::format(
+          "Bullet's run ended after {} steps: a number was no longer finite", runs.bullet->steps));
+    }
+  }
+  return runs;
+}
+
+Plot plot_over_time(const std::string& title, const std::string& y_label, const Runs& runs,
+                    const Measure& measure, const std::function<double(double)>& closed_form) {
+  Plot plot;
+  plot.title = title;
+  plot.x_label = "time [s]";
+  plot.y_label = y_label;
+  runs.for_each([&](const Track& track) { plot.series.push_back(series_of(track, measure)); });
+  if (closed_form && !plot.series.empty()) {
+    Series exact;
+    exact.name = "closed form";
+    exact.engine = "closed form";
+    exact.x = plot.series.front().x;
+    for (const double t : exact.x) exact.y.push_back(closed_form(t));
+    plot.series.push_back(std::move(exact));
+  }
+  return plot;
+}
+
+void add_energy_and_overlap_plots(const Runs& runs, SceneReport& report) {
+  report.plots.push_back(
+      plot_over_time("Kinetic and potential energy", "energy [J]", runs,
+                     [](const Track& track, std::size_t k) { return track.energy(k); }));
+  report.plots.push_back(
+      plot_over_time("Deepest overlap", "overlap [m]", runs,
+                     [](const Track& track, std::size_t k) { return track.overlap[k]; }));
+}
+
+std::string text(double value) {
+  return fmt::format("{:.9g}", value);
+}
+
+std::string text(const Vec3& value) {
+  return fmt::format("({:.9g}, {:.9g}, {:.9g})", value.x(), value.y(), value.z());
+}
+
+}  // namespace signorini::validation

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <signorini/core/response/time_stepper.h>
+#include <signorini/validation/bullet_profile.h>
+#include <signorini/validation/report.h>
+#include <signorini/validation/run_control.h>
+#include <signorini/validation/scene.h>
+#include <signorini/validation/track.h>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace signorini::validation {
+
+/// What the caller of a validation chose.
+struct RunOptions {
+  bool signorini = true;
+  bool bullet = true;
+  std::optional<double> duration;  ///< s; overrides the scene's own
+  BulletProfile profile = BulletProfile::neutral();
+  const StopFlag* stop = nullptr;
+};
+
+/// The run was stopped: the scene has no report.
+struct RunInterrupted {};
+
+/// Both engines' runs of one scene; null where the engine was not asked for.
+struct Runs {
+  std::optional<Track> signorini;
+  std::optional<Track> bullet;
+
+  /// Calls f for each run that exists.
+  void for_each(const std::function<void(const Track&)>& f) const {
+    if (signorini) f(*signorini);
+    if (bullet) f(*bullet);
+  }
+};
+
+/// Are unsolved steps of ours a failure of the scene, or what it is there to show?
+enum class UnsolvedSteps : unsigned char { kFail, kShow };
+
+/// Runs the scene in the engines chosen. Writes settings, seconds and notices into the report, and
+/// the checks that every scene has: every step of ours solved, every number finite.
+/// @throws RunInterrupted
+[[nodiscard]] Runs run_engines(const Scene& scene, const RunOptions& options, SceneReport& report,
+                               UnsolvedSteps unsolved = UnsolvedSteps::kFail);
+
+/// A run of ours apart from the report's, with the caller's stop flag. @throws RunInterrupted
+[[nodiscard]] Track run_ours(const Scene& scene, const TimeStepSettings& settings,
+                             const RunOptions& options);
+/// @throws RunInterrupted
+[[nodiscard]] Track run_theirs(const Scene& scene, const BulletProfile& profile,
+                               const RunOptions& options);
+
+/// A number of a track as a function of its sample.
+using Measure = std::function<double(const Track&, std::size_t)>;
+/// One line an engine, and the closed form (of time) if given.
+[[nodiscard]] Plot plot_over_time(const std::string& title, const std::string& y_label,
+                                  const Runs& runs, const Measure& measure,
+                                  const std::function<double(double)>& closed_form = nullptr);
+/// "energy of ..." and "deepest overlap": the plots that every scene has.
+void add_energy_and_overlap_plots(const Runs& runs, SceneReport& report);
+
+/// Numbers for tables.
+[[nodiscard]] std::string text(double value);
+[[nodiscard]] std::string text(const Vec3& value);
+
+}  // namespace signorini::validation

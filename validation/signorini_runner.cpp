@@ -1,0 +1,110 @@
+#include <signorini/validation/scene_contacts.h>
+#include <signorini/validation/signorini_runner.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fmt/format.h>
+
+namespace signorini::validation {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::vector<BodySample> sample_of(const Bodies& bodies, const State& state) {
+  std::vector<BodySample> sample(bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    sample[i] = {state[i].pose(), velocity(bodies[i], state[i])};
+  }
+  return sample;
+}
+
+bool is_finite(const State& state) {
+  return std::all_of(state.begin(), state.end(), [](const BodyState& body) {
+    return body.x.allFinite() && body.q.coeffs().allFinite() && body.p.allFinite() &&
+           body.L.allFinite();
+  });
+}
+
+void count_ending(const StepReport& report, double time, Track& track) {
+  ++track.endings[std::string(lcp::to_string(report.status))];
+  if (report.result.statistics.solve_seconds > 0.0) {
+    track.solver_seconds += report.result.statistics.solve_seconds;
+  }
+  track.projection_energy += report.energy_change_projection;
+  if (report.projection_status != lcp::Status::kNotRun &&
+      !lcp::is_solved(report.projection_status)) {
+    ++track.unsolved_projections;
+  }
+  if (lcp::is_solved(report.status)) return;
+  if (track.unsolved_steps++ == 0) {
+    track.first_unsolved =
+        fmt::format("at t = {:.6g} s: {}, {} contacts, unit-free residual {:.3g}{}{}", time,
+                    lcp::to_string(report.status), report.contacts.size(),
+                    report.result.certificate.unit_free_residual,
+                    report.result.detail.empty() ? "" : "; ", report.result.detail);
+  }
+}
+
+}  // namespace
+
+TimeStepSettings step_settings(const Scene& scene) {
+  TimeStepSettings settings;
+  settings.step = scene.step;
+  settings.gravity = scene.gravity;
+  return settings;
+}
+
+Track run_signorini(const Scene& scene, const TimeStepSettings& settings, const StopFlag* stop) {
+  SceneContacts contacts(scene);
+  SceneContacts ruler(scene);
+  TimeStepper stepper(scene.bodies, contacts, settings);
+  State state = scene.state;
+  StepReport report;
+  Track track;
+  track.engine = "signorini";
+  track.step = settings.step;
+  track.solver_seconds = 0.0;
+  const long steps = scene.step_count();
+  TrackRecorder recorder(scene.bodies, scene.gravity, recording_stride(steps, scene.bodies.size()),
+                         track);
+  const auto record = [&](double time) {
+    const OverlapMeasure overlap = measure_overlap(ruler, state);
+    recorder.record(time, sample_of(scene.bodies, state), overlap.deepest, overlap.contacts);
+  };
+  record(0.0);
+  for (long k = 1; k <= steps; ++k) {
+    if (stop != nullptr && stop->load()) {
+      track.interrupted = true;
+      break;
+    }
+    const Clock::time_point start = Clock::now();
+    stepper.step(state, report);
+    track.wall_seconds += std::chrono::duration<double>(Clock::now() - start).count();
+    ++track.steps;
+    const double time = static_cast<double>(k) * settings.step;
+    count_ending(report, time, track);
+    if (!is_finite(state)) {
+      track.broke_down = true;
+      break;
+    }
+    if (recorder.wants(k, steps)) record(time);
+  }
+  return track;
+}
+
+std::vector<std::string> describe(const TimeStepSettings& settings) {
+  const bool quaternion = settings.orientation == OrientationScheme::kQuaternion;
+  const bool rk4 = settings.integrator == Integrator::kRungeKutta4;
+  return {
+      fmt::format("Signorini: time stepping, step {:.9g} s, gravity ({:g}, {:g}, {:g}) m/s^2",
+                  settings.step, settings.gravity.x(), settings.gravity.y(), settings.gravity.z()),
+      fmt::format("Signorini: {} integration, orientation as a {}",
+                  rk4 ? "Runge-Kutta 4" : "semi-implicit",
+                  quaternion ? "normalised quaternion" : "matrix with Gram-Schmidt"),
+      fmt::format("Signorini: solver {}, tolerance {:g}; friction pyramid of {} sides; contact "
+                  "margin {:g} m; touching below {:g} m; restitution threshold {:g} m/s",
+                  settings.solver, settings.lcp.tolerance, settings.pyramid_sides, settings.margin,
+                  settings.touching_tolerance, settings.restitution_threshold)};
+}
+
+}  // namespace signorini::validation

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <signorini/core/response/time_stepper.h>
+#include <signorini/validation/run_control.h>
+#include <signorini/validation/scene.h>
+#include <signorini/validation/track.h>
+
+#include <string>
+#include <vector>
+
+namespace signorini::validation {
+
+/// The settings a scene is run with: TimeStepSettings' defaults, the scene's step and gravity.
+[[nodiscard]] TimeStepSettings step_settings(const Scene& scene);
+
+/// Runs the scene with collision::CollisionWorld and TimeStepper. A step whose contact problem is
+/// not solved is counted, its best iterate used, and the run goes on; a run whose numbers stop
+/// being finite ends there (Track::broke_down).
+/// @param stop null, or a flag that ends the run early (Track::interrupted)
+[[nodiscard]] Track run_signorini(const Scene& scene, const TimeStepSettings& settings,
+                                  const StopFlag* stop = nullptr);
+
+/// How the run was made, one line a setting, for the report.
+[[nodiscard]] std::vector<std::string> describe(const TimeStepSettings& settings);
+
+}  // namespace signorini::validation

@@ -1,0 +1,55 @@
+#include <signorini/validation/track.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace signorini::validation {
+namespace {
+
+constexpr double kMostBodySamples = 2e6;
+
+/// As a state, so that the energies are core's own.
+State to_state(const Bodies& bodies, const std::vector<BodySample>& sample) {
+  State state(bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    state[i].x = sample[i].pose.position;
+    state[i].q = sample[i].pose.orientation;
+    set_velocity(bodies[i], sample[i].velocity, state[i]);
+  }
+  return state;
+}
+
+}  // namespace
+
+double Track::deepest_overlap() const {
+  return overlap.empty() ? 0.0 : *std::max_element(overlap.begin(), overlap.end());
+}
+
+Vec3 momentum(const Bodies& bodies, const std::vector<BodySample>& sample) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (bodies[i].is_dynamic()) sum += bodies[i].mass * sample[i].velocity.linear;
+  }
+  return sum;
+}
+
+TrackRecorder::TrackRecorder(const Bodies& bodies, const Vec3& gravity, long stride, Track& track)
+    : bodies_(bodies), gravity_(gravity), stride_(stride), track_(track) {}
+
+void TrackRecorder::record(double time, std::vector<BodySample> sample, double overlap,
+                           int contacts) {
+  const State state = to_state(bodies_, sample);
+  track_.time.push_back(time);
+  track_.kinetic.push_back(kinetic_energy(bodies_, state));
+  track_.potential.push_back(potential_energy(bodies_, state, gravity_));
+  track_.overlap.push_back(overlap);
+  track_.contacts.push_back(contacts);
+  track_.bodies.push_back(std::move(sample));
+}
+
+long recording_stride(long steps, std::size_t body_count) {
+  const double samples = static_cast<double>(steps) * static_cast<double>(body_count);
+  return std::max(1L, static_cast<long>(std::ceil(samples / kMostBodySamples)));
+}
+
+}  // namespace signorini::validation

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <signorini/core/model/body.h>
+
+#include <cstddef>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace signorini::validation {
+
+/// A body at one moment.
+struct BodySample {
+  Pose pose;
+  Velocity velocity;
+};
+
+/// What a run recorded, whichever engine made it. Sample k is the state at time[k]; sample 0 is the
+/// initial state. Energies and overlaps are measured from the poses and velocities by the same
+/// code for both engines.
+struct Track {
+  std::string engine;  ///< "signorini" or "bullet"
+  double step = 0.0;   ///< s
+  std::vector<double> time;
+  std::vector<std::vector<BodySample>> bodies;  ///< [sample][body]
+  std::vector<double> kinetic;                  ///< J
+  std::vector<double> potential;                ///< J, zero where all bodies are at the origin
+  std::vector<double> overlap;                  ///< deepest overlap of the scene, >= 0, m
+  std::vector<int> contacts;                    ///< contacts with gap <= 0
+
+  long steps = 0;                       ///< taken
+  std::map<std::string, long> endings;  ///< how the contact problems of the steps ended (ours)
+  long unsolved_steps = 0;              ///< steps whose contact problem was not solved
+  std::string first_unsolved;           ///< when and why the first of them was not
+  long unsolved_projections = 0;        ///< position projections that were not solved (ours)
+  double projection_energy = 0.0;  ///< sum of the potential energy changes by projection (ours), J
+  double wall_seconds = 0.0;       ///< of the steps alone, measuring and recording apart
+  double solver_seconds = -1.0;    ///< inside the LCP solver (ours); -1: not measured
+  bool interrupted = false;        ///< the run was stopped before its end
+  bool broke_down = false;         ///< the run ended because a number was no longer finite
+
+  [[nodiscard]] std::size_t size() const { return time.size(); }
+  [[nodiscard]] double energy(std::size_t sample) const {
+    return kinetic[sample] + potential[sample];
+  }
+  [[nodiscard]] const BodySample& last(int body) const { return bodies.back()[body]; }
+  /// The deepest overlap of all samples, m.
+  [[nodiscard]] double deepest_overlap() const;
+};
+
+/// Momentum of the dynamic bodies at a sample, kg m/s.
+[[nodiscard]] Vec3 momentum(const Bodies& bodies, const std::vector<BodySample>& sample);
+
+/// Writes what a runner sees into a track: poses and velocities as given, energies from them.
+class TrackRecorder {
+ public:
+  /// Keeps every `stride`-th step, and the last.
+  TrackRecorder(const Bodies& bodies, const Vec3& gravity, long stride, Track& track);
+  [[nodiscard]] bool wants(long step, long last) const {
+    return step % stride_ == 0 || step == last;
+  }
+  void record(double time, std::vector<BodySample> sample, double overlap, int contacts);
+
+ private:
+  const Bodies& bodies_;
+  Vec3 gravity_;
+  long stride_;
+  Track& track_;
+};
+
+/// The stride that keeps a track within about 2 million body samples.
+[[nodiscard]] long recording_stride(long steps, std::size_t body_count);
+
+}  // namespace signorini::validation

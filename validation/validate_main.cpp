@@ -1,0 +1,232 @@
+// signorini-validate: scenes in, both engines run, checks judged, the report written.
+
+#include <signorini/validation/builtin_scenes.h>
+#include <signorini/validation/bullet_runner.h>
+#include <signorini/validation/input_error.h>
+#include <signorini/validation/sdf_reader.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <fmt/format.h>
+#include <optional>
+#include <string>
+#include <unistd.h>
+#include <vector>
+
+namespace {
+
+using namespace signorini::validation;
+
+enum Exit {
+  kGood = 0,
+  kCheckFailed = 1,
+  kUsage = 64,
+  kBadInput = 65,
+  kInternal = 70,
+  kStopped = 130
+};
+
+StopFlag stop_requested{false};
+static_assert(StopFlag::is_always_lock_free, "a signal handler sets it");
+
+extern "C" void request_stop(int) {
+  stop_requested.store(true);
+}
+
+struct Arguments {
+  std::vector<std::string> scenes;
+  std::string engine = "both";
+  std::optional<double> duration;
+  std::string out = "signorini-report";
+  std::string bullet_profile = "neutral";
+  bool skip_unsupported = false;
+  std::optional<double> ground;
+  bool list = false;
+};
+
+/// A built-in scene, or one read from a file.
+struct Job {
+  std::string name;
+  const BuiltinScene* builtin = nullptr;
+  Scene scene;
+};
+
+void declare(CLI::App& app, Arguments& arguments) {
+  app.add_option("SCENE", arguments.scenes,
+                 "SDFormat or URDF files, or names of built-in scenes; default: all built-in ones");
+  app.add_option("--engine", arguments.engine, "signorini, bullet or both")
+      ->check(CLI::IsMember({"signorini", "bullet", "both"}))
+      ->capture_default_str();
+  app.add_option("--duration", arguments.duration, "seconds to run; default: the scene's own, or 5")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--out", arguments.out, "folder of the report")->capture_default_str();
+  app.add_option("--bullet-profile", arguments.bullet_profile,
+                 "neutral (exact restitution, 50 iterations) or default (Bullet's own)")
+      ->check(CLI::IsMember({"neutral", "default"}))
+      ->capture_default_str();
+  app.add_flag("--skip-unsupported", arguments.skip_unsupported,
+               "leave out shapes and joints that are not supported, with a notice each");
+  app.add_option("--ground", arguments.ground,
+                 "add a fixed half-space z <= this height (m) to scenes read from files");
+  app.add_flag("--list", arguments.list, "list the built-in scenes and end");
+}
+
+void list_builtin_scenes() {
+  for (const BuiltinScene& builtin : builtin_scenes()) {
+    fmt::print("{:<28}{}\n", builtin.name, load_builtin_scene(builtin).title);
+  }
+}
+
+std::vector<Job> load_jobs(const Arguments& arguments) {
+  std::vector<Job> jobs;
+  if (arguments.scenes.empty()) {
+    for (const BuiltinScene& builtin : builtin_scenes()) {
+      jobs.push_back({std::string(builtin.name), &builtin, {}});
+    }
+  }
+  const ReadOptions options{arguments.skip_unsupported, arguments.ground};
+  for (const std::string& name : arguments.scenes) {
+    const BuiltinScene* builtin =
+        std::filesystem::exists(name) ? nullptr : find_builtin_scene(name);
+    if (builtin != nullptr) {
+      jobs.push_back({name, builtin, {}});
+    } else {
+      jobs.push_back({name, nullptr, read_scene_file(name, options)});
+    }
+  }
+  return jobs;
+}
+
+RunOptions run_options(const Arguments& arguments) {
+  RunOptions options;
+  options.signorini = arguments.engine != "bullet";
+  options.bullet = arguments.engine != "signorini";
+  options.duration = arguments.duration;
+  options.profile = BulletProfile::named(arguments.bullet_profile);
+  options.stop = &stop_requested;
+  return options;
+}
+
+/// The command that repeats one scene.
+std::string command_for(const Arguments& arguments, const std::string& scene) {
+  std::string command = "signorini-validate " + scene;
+  if (arguments.engine != "both") command += " --engine " + arguments.engine;
+  if (arguments.duration) command += fmt::format(" --duration {}", *arguments.duration);
+  if (arguments.bullet_profile != "neutral") {
+    command += " --bullet-profile " + arguments.bullet_profile;
+  }
+  if (arguments.skip_unsupported) command += " --skip-unsupported";
+  if (arguments.ground) command += fmt::format(" --ground {}", *arguments.ground);
+  return command;
+}
+
+std::string joined(int argc, char** argv) {
+  std::string line = "signorini-validate";
+  for (int i = 1; i < argc; ++i) line += std::string(" ") + argv[i];
+  return line;
+}
+
+/// "running ..." on a terminal, one line a scene everywhere.
+class Progress {
+ public:
+  explicit Progress(std::size_t count) : count_(count), terminal_(isatty(STDOUT_FILENO) != 0) {}
+
+  void start(std::size_t index, const std::string& name) {
+    if (!terminal_) return;
+    fmt::print("[{}/{}] {} ...", index + 1, count_, name);
+    std::fflush(stdout);
+  }
+  void finish(std::size_t index, const SceneReport& report) {
+    int failed = 0;
+    for (const Check& check : report.checks) failed += check.judged() == Verdict::kFail ? 1 : 0;
+    fmt::print("{}[{}/{}] {:<28}{:<12}{} checks{}\n", terminal_ ? "\r\x1b[K" : "", index + 1,
+               count_, report.name, to_string(report.verdict()), report.checks.size(),
+               failed > 0 ? fmt::format(", {} failed", failed) : "");
+    for (const Check& check : report.checks) {
+      if (check.judged() != Verdict::kFail) continue;
+      fmt::print("      failed: {} ({}): {:.9g} {}, expected {:.9g}, {} error {:.3g} > {:.3g}\n",
+                 check.name, check.engine, check.value, check.unit, check.expected,
+                 check.error_kind, check.error, check.tolerance);
+    }
+    std::fflush(stdout);
+  }
+  void interrupted() { fmt::print("{}stopped\n", terminal_ ? "\r\x1b[K" : ""); }
+
+ private:
+  std::size_t count_;
+  bool terminal_;
+};
+
+Report run_jobs(std::vector<Job> jobs, const Arguments& arguments) {
+  const RunOptions options = run_options(arguments);
+  Report report;
+  report.version = SIGNORINI_VERSION;
+  report.engines = fmt::format("Bullet {} (double precision), libsdformat {}", bullet_version(),
+                               sdformat_version());
+  Progress progress(jobs.size());
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    Job& job = jobs[i];
+    progress.start(i, job.name);
+    try {
+      SceneReport scene = job.builtin != nullptr ? validate_builtin(*job.builtin, options)
+                                                 : validate_scene(std::move(job.scene), options);
+      scene.command = command_for(arguments, job.name);
+      progress.finish(i, scene);
+      report.scenes.push_back(std::move(scene));
+    } catch (const RunInterrupted&) {
+      progress.interrupted();
+      report.partial = true;
+      break;
+    }
+  }
+  return report;
+}
+
+int run(const Arguments& arguments, const std::string& command) {
+  if (arguments.list) {
+    list_builtin_scenes();
+    return kGood;
+  }
+  Report report = run_jobs(load_jobs(arguments), arguments);
+  report.command = command;
+  for (const std::string& file : write_report(report, arguments.out)) {
+    fmt::print("wrote {}\n", file);
+  }
+  if (report.partial) return kStopped;
+  for (const SceneReport& scene : report.scenes) {
+    if (scene.verdict() == Verdict::kFail) return kCheckFailed;
+  }
+  return kGood;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "Runs scenes in Signorini and in Bullet (double precision), compares both with closed forms, "
+      "and writes report.html, report.md and report.json.\n"
+      "Exit: 0 every check passed, 1 a check failed, 64 bad usage, 65 bad or unsupported scene, "
+      "130 "
+      "stopped (the report written is partial)."};
+  Arguments arguments;
+  declare(app, arguments);
+  app.set_version_flag("--version", SIGNORINI_VERSION);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kGood : kUsage;
+  }
+  std::signal(SIGINT, request_stop);
+  std::signal(SIGTERM, request_stop);
+  try {
+    return run(arguments, joined(argc, argv));
+  } catch (const InputError& error) {
+    fmt::print(stderr, "signorini-validate: {}\n", error.what());
+    return kBadInput;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "signorini-validate: {}\n", error.what());
+    return kInternal;
+  }
+}
