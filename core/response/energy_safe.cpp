@@ -21,17 +21,23 @@ double squared_in_inverse_mass(const NormalRows& rows, const lcp::Vector& f) {
 
 }  // namespace
 
+double residual_allowed(const NormalRows& rows, const lcp::VectorRef& f, double tolerance) {
+  if (f.size() == 0) {
+    return 0.0;
+  }
+  const double floor = lcp::certify(plastic_problem(rows), f).rounding_floor;
+  return std::max(tolerance, kFloors * floor) * rows.d_dot.cwiseAbs().maxCoeff();
+}
+
 bool is_admissible(const NormalRows& rows, const lcp::VectorRef& f, double tolerance) {
   if (f.size() == 0) {
     return true;
   }
-  lcp::Vector after;
-  const lcp::Certificate certificate = lcp::certify(plastic_problem(rows), f, &after);
   lcp::Vector diagonal;
   rows.A.diagonal(diagonal);
-  const double slack =
-      std::max(tolerance, kFloors * certificate.rounding_floor) * rows.d_dot.cwiseAbs().maxCoeff();
-  return f.cwiseProduct(diagonal).minCoeff() >= -slack && after.minCoeff() >= -slack;
+  const double allowed = residual_allowed(rows, f, tolerance);
+  return f.cwiseProduct(diagonal).minCoeff() >= -allowed &&
+         gap_velocities_after(rows, f).minCoeff() >= -allowed;
 }
 
 EnergyLine energy_line(const NormalRows& rows, const lcp::VectorRef& f_c,

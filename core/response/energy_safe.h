@@ -4,8 +4,13 @@
 
 namespace signorini {
 
-/// True if f >= 0 and A f + d'- >= 0, each to tolerance |d'-|_inf (A_ii f_i for f, so that both are
-/// in m/s) or to four times the rounding floor of lcp::Certificate where that is larger.
+/// How far f and A f + d'- may miss their bounds, m/s: tolerance |d'-|_inf, or four times the
+/// rounding of A f + d'- (the rounding floor of lcp::Certificate) where that is larger.
+[[nodiscard]] double residual_allowed(const NormalRows& rows, const lcp::VectorRef& f,
+                                      double tolerance);
+
+/// True if f >= 0 and A f + d'- >= 0, each to residual_allowed() (A_ii f_i for f, so that both are
+/// in m/s).
 [[nodiscard]] bool is_admissible(const NormalRows& rows, const lcp::VectorRef& f, double tolerance);
 
 /// The energy gain along f(theta) = f_c + theta (f_e - f_c) (design, section 4.4):

@@ -61,7 +61,8 @@ LeastNorm least_norm(const NormalRows& rows, const lcp::VectorRef& g,
     if (!lcp::is_solved(result.status)) {
       return answer;
     }
-    least = (result.z.array() > 0.0).select(0.0, result.w);  // g_i = 0 where alpha_i > 0
+    // g_i = 0 where alpha_i > 0, and where rounding alone makes it negative.
+    least = (result.z.array() > 0.0).select(0.0, result.w.cwiseMax(0.0));
   }
   answer.forces(chosen) = least;
   return answer;

@@ -57,16 +57,22 @@ Acceleration acceleration(const Body& body, const BodyState& state, const Wrench
   return {};
 }
 
-lcp::Vector gap_accelerations(const Bodies& bodies, const State& state, const ContactSet& contacts,
-                              const std::vector<Wrench>& loads,
-                              const std::vector<Wrench>& driven_acceleration) {
+void note(const std::string& text, std::string& detail) {
+  detail += (detail.empty() ? "" : "; ") + text;
+}
+
+/// report.b, and the contacts where it is not determined.
+void assemble_gap_accelerations(const Bodies& bodies, const State& state,
+                                const ContactSet& contacts, const std::vector<Wrench>& loads,
+                                const std::vector<Wrench>& driven_acceleration,
+                                RestingReport& report) {
   std::vector<Acceleration> accelerations;
   accelerations.reserve(bodies.size());
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     const Wrench driven = driven_acceleration.empty() ? Wrench{} : driven_acceleration[k];
     accelerations.push_back(acceleration(bodies[k], state[k], loads[k], driven));
   }
-  lcp::Vector b(contacts.size());
+  report.b.resize(contacts.size());
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const Contact& contact = contacts[i];
     const BodyState& state_a = state[contact.body_a];
@@ -76,9 +82,12 @@ lcp::Vector gap_accelerations(const Bodies& bodies, const State& state, const Co
                        velocity(bodies[contact.body_b], state_b));
     const Vec3 a_a = accelerations[contact.body_a].at(contact.point_a - state_a.x);
     const Vec3 a_b = accelerations[contact.body_b].at(contact.point_b - state_b.x);
-    b[i] = contact.normal.dot(a_a - a_b) + gap.curvature_acceleration;
+    report.b[i] = contact.normal.dot(a_a - a_b) + gap.curvature_acceleration;
+    if (gap.degenerate) {
+      report.degenerate_contacts.push_back(static_cast<int>(i));
+      note("contact " + std::to_string(i) + ": its features do not determine N'", report.detail);
+    }
   }
-  return b;
 }
 
 /// Where forces may act: d'' is zero up to what the certificate allows.
@@ -109,14 +118,14 @@ void choose_least_norm(const lcp::Problem& problem, const NormalRows& rows, doub
   const lcp::Status judged = lcp::judge(certificate, tolerance, lcp::Status::kNumericalBreakdown);
   if (!lcp::is_solved(least.status) || !lcp::is_solved(judged)) {
     report.least_norm_status = lcp::is_solved(least.status) ? judged : least.status;
-    report.detail = many + ", the least-norm ones were not found";
+    note(many + ", the least-norm ones were not found", report.detail);
     return;
   }
   report.forces = least.forces;
   report.result.w = w;
   report.result.certificate = certificate;
   report.result.status = judged;
-  report.detail = many + ", the least-norm ones are given";
+  note(many + ", the least-norm ones are given", report.detail);
 }
 
 }  // namespace
@@ -140,7 +149,7 @@ void resting_forces(const Bodies& bodies, const State& state, const ContactSet& 
   assemble_normals(bodies, state, contacts, rows);
 
   RestingReport fresh;
-  fresh.b = gap_accelerations(bodies, state, contacts, loads, driven_acceleration);
+  assemble_gap_accelerations(bodies, state, contacts, loads, driven_acceleration, fresh);
   lcp::Problem problem;
   problem.M = rows.A;
   problem.q = fresh.b;

@@ -36,6 +36,9 @@ struct RestingReport {
   lcp::Status least_norm_status = lcp::Status::kNotRun;
   /// z is the LCP's answer before the choice of least norm; the certificate is of `forces`.
   lcp::Result result;
+  /// Contacts whose features do not determine how N turns (GapKinematics::degenerate): their b is
+  /// what the features do say. Named in detail.
+  std::vector<int> degenerate_contacts;
   std::string detail;  ///< one line: what was done beyond the LCP
 };
 

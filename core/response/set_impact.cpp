@@ -80,16 +80,14 @@ class SetImpact {
     return f;
   }
 
-  /// The certificate is about the LCP. That its f satisfies the notes' conditions follows with an
-  /// error of the residual (of sigma's rows and of tau's, n times: the mean is n times smaller than
-  /// the sum); it is checked all the same.
+  /// The certificate is about the LCP, whose multipliers may be so large (normals that differ by
+  /// little) that its rounding says nothing about f. So the notes' conditions are checked on f
+  /// alone, with the rounding of A f: twice n residuals, since tau's row bounds a mean.
   void check_notes(const NotesProblem& notes, const lcp::Vector& f) {
     const double n = static_cast<double>(f.size());
-    const lcp::Certificate& certificate = out_.law.certificate;
-    const double residual = std::max(settings_.lcp.tolerance, 4.0 * certificate.rounding_floor);
-    const double allowed = 2.0 * n * residual * notes.problem.q.cwiseAbs().maxCoeff();
+    const double allowed = 2.0 * n * residual_allowed(rows_, f, settings_.lcp.tolerance);
     const double violation = notes_violation(notes, rows_, f);
-    if (violation > allowed) {
+    if (!(violation <= allowed)) {
       out_.law.status = lcp::Status::kNumericalBreakdown;
       out_.law.detail += (out_.law.detail.empty() ? "" : "; ") +
                          ("the notes' conditions are violated by " + number_text(violation) +
