@@ -9,9 +9,6 @@
 namespace signorini::collision::narrow {
 namespace {
 
-/// Of the smaller box's half diagonal: by how much the distance must exceed the separation along
-/// the best axis before the nearest features are no longer a face's or two edges'.
-constexpr double kCornerTolerance = 1e-9;
 /// Edges within this angle (radians) of parallel touch along a line, not in a point.
 constexpr double kParallelEdges = 1e-7;
 
@@ -109,8 +106,8 @@ NearEdge edge_through(BoxSides sides, int axis) {
   return {axis, sides};
 }
 
-bool is_edge(const NearEdge& edge) {
-  return edge.sides[(edge.axis + 1) % 3] != 0 && edge.sides[(edge.axis + 2) % 3] != 0;
+bool is_edge(const BoxSides& sides) {
+  return std::count(sides.begin(), sides.end(), 0) == 1;
 }
 
 /// The ends of the stretch along which two parallel edges face each other; each is a vertex of one
@@ -156,7 +153,7 @@ void find_at_corners(const PlacedBox& a, const PlacedBox& b, const BoxNearest& n
       const NearEdge edge_a = edge_through(nearest.sides_a, i);
       const NearEdge edge_b = edge_through(nearest.sides_b, j);
       const Vec3 u = a.axes.col(i);
-      if (is_edge(edge_a) && is_edge(edge_b) && std::abs(u.dot(N)) <= kParallelEdges &&
+      if (is_edge(edge_a.sides) && is_edge(edge_b.sides) && std::abs(u.dot(N)) <= kParallelEdges &&
           u.cross(b.axes.col(j)).norm() <= kParallelEdges) {
         find_on_parallel_edges(a, edge_a, b, edge_b, N, margin, contacts);
         return;
@@ -199,8 +196,10 @@ void find(const Box& a, const Pose& pose_a, const Box& b, const Pose& pose_b, do
     if (nearest.distance > margin) {
       return;
     }
-    const double size = std::min(box_a.half.norm(), box_b.half.norm());
-    if (nearest.distance > found.separation + kCornerTolerance * size) {
+    // The nearest points lie this far beside each other as the best axis sees them.
+    const double beside = std::sqrt(std::max(0.0, nearest.distance - found.separation) *
+                                    (nearest.distance + found.separation));
+    if (beside > preference_tolerance(box_a, box_b)) {
       find_at_corners(box_a, box_b, nearest, margin, contacts);
       return;
     }
@@ -211,7 +210,7 @@ void find(const Box& a, const Pose& pose_a, const Box& b, const Pose& pose_b, do
   }
   find_on_face(box_a, box_b, found.preferred, margin, contacts);
   if (contacts.empty() && apart) {
-    // Beside the face by little of the distance, yet by more than the clipping's slack.
+    // Beside the preferred face by more than the clipping's slack, though not beside the best axis.
     find_at_corners(box_a, box_b, nearest, margin, contacts);
   }
 }

@@ -21,8 +21,8 @@ struct MovingShape {
 /// the rounding of the positions), it is the time after which d falls more than eps/2 below the
 /// level:
 /// - apart at the start: the time at which d reaches 0;
-/// - touching (or overlapping) at the start: 0 if approaching; if resting (|d| stays within eps/2)
-///   nothing; if separating, the next approach.
+/// - touching (d <= eps/2, so overlapping too) at the start: exactly 0 if approaching; nothing if
+///   resting (d stays within eps/2 of the level); if separating, the next approach.
 /// At the returned time d is within rounding of the level, and it was nowhere before it below the
 /// level by more than eps. A dip by less than eps/2 (grazing) is no contact, one by more than eps
 /// is always found, one in between may be either.
@@ -32,15 +32,15 @@ struct MovingShape {
 /// (the contact normal at either end) in which the shapes' separation is s_n <= d:
 ///
 ///     s_n(t) >= min(s_n(t0), s_n(t1)) - sum of deviation over both shapes,
-///     deviation = b_x + (L_x - |x1 - x0|/h) h + r (phi^2/8 + 1.1 (b_phi + W h - phi)),
+///     deviation = b_x + (L_x h - |x1 - x0|) + r (|n x a| phi^2/8 + 1.1 (b_phi + W h - phi)),
 ///     b_x = 1/2 sqrt((L_x h)^2 - |x1 - x0|^2), b_phi = 1/2 sqrt((W h)^2 - phi^2),
 ///
-/// h = t1 - t0, L_x and W the speed bounds, phi the angle turned, r the radius that turns: how far
-/// a point of the shape can be from the straight line between its two ends. For motions whose
-/// bounds are tight (constant velocities) it is second order in h, so that shapes that slide, roll
-/// or rest on each other are passed in few steps. After 100000 intervals (bounds that are loose, or
-/// shapes that stay within eps of each other while they move far) the rest is searched at 1000
-/// further samples only, between which a dip may pass.
+/// h = t1 - t0, L_x and W the speed bounds, phi and a the angle turned and its axis, r the radius
+/// that turns: how far a point of the shape can be from the straight line between its two ends. For
+/// motions whose bounds are tight (constant velocities) it is second order in h, so that shapes
+/// that slide, roll or rest on each other are passed in few steps. After 100000 intervals (bounds
+/// that are loose, or shapes that stay within eps of each other while they move far) the rest is
+/// searched at 1000 further samples only, between which a dip may pass.
 ///
 /// Two half-spaces: none. @throws std::invalid_argument: bad shape, pose, duration (finite, >= 0)
 /// or speed bound (finite, >= 0).

@@ -14,13 +14,21 @@ namespace signorini::collision {
                                      const Pose& pose_b);
 
 /// Find-intersection query: the reduced contact set, every contact with gap <= margin. Geometry
-/// only: body_a = 0, body_b = 1 and no material; feature_id is of the pair of features alone.
+/// only: body_a = 0, body_b = 1 and no material; feature_id is of the pair of features alone
+/// (feature_id.h). Not empty exactly where signed_distance() <= margin; the least gap is that
+/// distance (box and box: to 1e-6 of the smaller box's half diagonal, box_separation.h says why).
 ///
-/// Face-face: the incident face clipped against the reference face (its vertices inside, and the
-/// crossings of the edges). Edge-face: the end points (or clipped ends) of the edge. Edge-edge, not
-/// parallel: the one point pair of closest approach. Exchange of A and B gives the same points with
-/// N reversed. Two half-spaces: none are reported (both are immovable).
-/// @param margin m, >= 0
+/// Face-face: the incident face clipped against the reference face (its vertices inside, the
+/// crossings of the edges, and the reference face's vertices inside it). Edge-face: the end points
+/// (or clipped ends) of the edge. Edge-edge, not parallel: the one point pair of closest approach.
+/// Apart, and nearest at vertices or at a vertex and an edge: these points, with the direction
+/// between them as N. Exchange of A and B gives the same points with N reversed. All contacts of a
+/// pair share one N. Two half-spaces: none are reported (both are immovable).
+/// @param margin m, >= 0, may be +infinity
+/// @param contacts are replaced
+/// @throws std::invalid_argument naming the field, its value and the bound, before anything is
+/// changed; so do the other two queries
+/// Cost, one core at some 3 GHz: 50 ns (sphere, half-space) to 1 us (boxes that touch).
 void find_intersection(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
                        double margin, std::vector<Contact>& contacts);
 

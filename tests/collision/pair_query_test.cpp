@@ -20,7 +20,7 @@ using testing::Random;
 using testing::ShapeKind;
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(NDEBUG)
-constexpr int kPosesPerPair = 10000;
+constexpr int kPosesPerPair = 20000;
 #else
 constexpr int kPosesPerPair = 200000;
 #endif

@@ -1,0 +1,247 @@
+// d' and d'' of every kind of contact that find_intersection() produces, against finite differences
+// of the gap that it produces at moved poses.
+
+#include <signorini/collision/feature_id.h>
+#include <signorini/collision/pair_query.h>
+#include <signorini/core/model/contact_kinematics.h>
+
+#include "random_pairs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <map>
+#include <optional>
+#include <string>
+
+namespace signorini::collision {
+namespace {
+
+using testing::Random;
+using testing::ShapeKind;
+
+constexpr int kPoses = 20000;
+
+/// A body whose frame is its shape's, with velocities and accelerations.
+struct MovingBody {
+  Pose start;
+  Velocity velocity;
+  Velocity acceleration;  ///< v' and w'
+
+  /// To second order in t, the orientation by the rotation vector w t + w' t^2 / 2 (whose own
+  /// second-order error, w x w', is of third order in t).
+  [[nodiscard]] Pose at(double t) const {
+    const Vec3 turn = t * velocity.angular + 0.5 * t * t * acceleration.angular;
+    const double angle = turn.norm();
+    const Quat rotation =
+        angle == 0.0 ? Quat::Identity() : Quat(Eigen::AngleAxisd(angle, turn / angle));
+    return {start.position + t * velocity.linear + 0.5 * t * t * acceleration.linear,
+            (rotation * start.orientation).normalized()};
+  }
+
+  /// v' + w' x r + w x (w x r).
+  [[nodiscard]] Vec3 acceleration_at(const Vec3& r) const {
+    return acceleration.at(r) + velocity.angular.cross(velocity.angular.cross(r));
+  }
+};
+
+MovingBody random_body(Random& random, const Pose& start, double size) {
+  const auto vector = [&](double length) {
+    return Vec3(length * testing::random_direction(random));
+  };
+  return {start, {vector(size), vector(1.0)}, {vector(size), vector(1.0)}};
+}
+
+/// The gap of the contact at time t; nothing if it is no longer there, or its edges cross on a
+/// face.
+std::optional<double> gap_at(const Shape& a, const MovingBody& body_a, const Shape& b,
+                             const MovingBody& body_b, const Contact& wanted, double t) {
+  std::vector<Contact> contacts;
+  find_intersection(a, body_a.at(t), b, body_b.at(t), 1e9, contacts);
+  for (const Contact& contact : contacts) {
+    if (contact.feature_id == wanted.feature_id && contact.owner == wanted.owner) {
+      return contact.gap;
+    }
+  }
+  return std::nullopt;
+}
+
+/// A clipped point is a point of the incident body's material: its gap is its height over the
+/// moving reference face, wherever the clipping would find the crossing next.
+double material_gap_at(const Contact& contact, const MovingBody& body_a, const MovingBody& body_b,
+                       double t) {
+  const auto carried = [&](const MovingBody& body, const Vec3& point) {
+    return body.at(t) * (body.start.inverse() * point);
+  };
+  const bool face_of_a = contact.owner == NormalOwner::kFaceA;
+  const MovingBody& owner = face_of_a ? body_a : body_b;
+  const Vec3 N = owner.at(t).orientation * (owner.start.orientation.conjugate() * contact.normal);
+  return N.dot(carried(body_a, contact.point_a) - carried(body_b, contact.point_b));
+}
+
+struct Difference {
+  double first;
+  double second;
+};
+
+/// Fourth-order central differences; nothing if a gap is missing.
+template <class Gap>
+std::optional<Difference> differences(Gap&& gap, double h) {
+  double g[5];
+  for (int k = 0; k < 5; ++k) {
+    const std::optional<double> value = gap((k - 2) * h);
+    if (!value) {
+      return std::nullopt;
+    }
+    g[k] = *value;
+  }
+  return Difference{(g[0] - 8.0 * g[1] + 8.0 * g[3] - g[4]) / (12.0 * h),
+                    (-g[0] + 16.0 * g[1] - 30.0 * g[2] + 16.0 * g[3] - g[4]) / (12.0 * h * h)};
+}
+
+/// What kind of contact it is, for the counts.
+std::string kind_of(const Contact& contact, bool is_vertex) {
+  constexpr const char* kOwners[] = {"face of A", "face of B", "edge-edge", "curved"};
+  const auto side = [](const LocalSurface& surface) -> std::string {
+    if (surface.radius_along == 0.0) {
+      return "vertex";
+    }
+    if (std::isinf(surface.radius_along)) {
+      return surface.radius_across == 0.0 ? "edge" : "face";
+    }
+    return "round";
+  };
+  return std::string(kOwners[static_cast<int>(contact.owner)]) + ", " + side(contact.surface_a) +
+         "/" + side(contact.surface_b) + (is_vertex ? "" : ", clipped");
+}
+
+bool is_polyhedron_vertex(Feature feature) {
+  return feature == 0 || feature == 2 || feature == 6 || feature == 8 || feature == 18 ||
+         feature == 20 || feature == 24 || feature == 26;
+}
+
+TEST(GapDerivatives, OfEveryContactMatchFiniteDifferences) {
+  Random random(20260120);
+  constexpr ShapeKind kKinds[][2] = {
+      {ShapeKind::kSphere, ShapeKind::kSphere}, {ShapeKind::kSphere, ShapeKind::kBox},
+      {ShapeKind::kBox, ShapeKind::kSphere},    {ShapeKind::kSphere, ShapeKind::kHalfSpace},
+      {ShapeKind::kBox, ShapeKind::kHalfSpace}, {ShapeKind::kHalfSpace, ShapeKind::kBox},
+      {ShapeKind::kBox, ShapeKind::kBox},       {ShapeKind::kBox, ShapeKind::kBox},
+      {ShapeKind::kBox, ShapeKind::kBox}};
+  std::map<std::string, int> compared;
+  std::map<std::string, double> worst;
+  int left_out = 0;
+  for (int k = 0; k < kPoses; ++k) {
+    const Shape a = kKinds[k % 9][0] == ShapeKind::kSphere ? Shape(Sphere{0.7})
+                    : kKinds[k % 9][0] == ShapeKind::kBox  ? Shape(Box{{0.5, 0.8, 0.6}})
+                                                           : Shape(HalfSpace{});
+    const Shape b = kKinds[k % 9][1] == ShapeKind::kSphere ? Shape(Sphere{0.4})
+                    : kKinds[k % 9][1] == ShapeKind::kBox  ? Shape(Box{{0.9, 0.4, 0.7}})
+                                                           : Shape(HalfSpace{});
+    testing::PlacedPair pair{a,
+                             {Vec3::Zero(), testing::random_orientation(random)},
+                             b,
+                             {Vec3::Zero(), testing::random_orientation(random)}};
+    pair.pose_a.position = 0.5 * testing::random_direction(random);
+    if (k % 18 >= 9) {
+      pair.pose_a.position = 2.0 * testing::random_direction(random);
+    }
+    std::vector<Contact> contacts;
+    find_intersection(a, pair.pose_a, b, pair.pose_b, 1e9, contacts);
+    // Near contact, touching, or a little overlapping: gaps of -0.05, 0, 0.05, 0.3.
+    const auto& least = *std::min_element(contacts.begin(), contacts.end(),
+                                          [](auto& p, auto& q) { return p.gap < q.gap; });
+    constexpr double kGaps[] = {-0.05, 0.0, 0.05, 0.3};
+    pair.pose_a.position += (kGaps[k / 18 % 4] - least.gap) * least.normal;
+    find_intersection(a, pair.pose_a, b, pair.pose_b, 0.5, contacts);
+
+    const MovingBody body_a = random_body(random, pair.pose_a, 1.0);
+    const MovingBody body_b = random_body(random, pair.pose_b, 1.0);
+    for (const Contact& contact : contacts) {
+      const GapKinematics kinematics = gap_kinematics(
+          contact, {body_a.start.position, body_a.start.orientation}, body_a.velocity,
+          {body_b.start.position, body_b.start.orientation}, body_b.velocity);
+      const double second =
+          contact.normal.dot(body_a.acceleration_at(contact.point_a - body_a.start.position) -
+                             body_b.acceleration_at(contact.point_b - body_b.start.position)) +
+          kinematics.curvature_acceleration;
+      const auto feature_a = static_cast<Feature>(contact.feature_id >> 32);
+      const auto feature_b = static_cast<Feature>(contact.feature_id);
+      const bool on_face =
+          contact.owner == NormalOwner::kFaceA || contact.owner == NormalOwner::kFaceB;
+      const bool both_boxes = std::holds_alternative<Box>(a) && std::holds_alternative<Box>(b);
+      const Feature incident = contact.owner == NormalOwner::kFaceA ? feature_b : feature_a;
+      const bool clipped = both_boxes && on_face && !is_polyhedron_vertex(incident);
+
+      // The size of a step is a balance: truncation h^4, rounding eps / h^2.
+      const double h = 1e-3;
+      const auto measured =
+          clipped
+              ? differences(
+                    [&](double t) {
+                      return std::optional(material_gap_at(contact, body_a, body_b, t));
+                    },
+                    h)
+              : differences([&](double t) { return gap_at(a, body_a, b, body_b, contact, t); }, h);
+      if (!measured || kinematics.degenerate) {
+        ++left_out;  // the features change within 2 ms
+        continue;
+      }
+      // Truncation: h^4 times a fifth or sixth derivative of a gap function whose scale of length
+      // is the distance of the curves' centres, or of the crossing lines (edges that cross at a
+      // small angle turn their normal fast).
+      double scale = 1.0;
+      if (contact.owner == NormalOwner::kEdgeEdge) {
+        scale = contact.surface_a.direction.cross(contact.surface_b.direction).norm();
+      } else if (contact.owner == NormalOwner::kCurved) {
+        const auto radius = [](double r) { return std::isfinite(r) ? r : 0.0; };
+        scale = std::min(1.0, std::abs(contact.gap + radius(contact.surface_a.radius_across) +
+                                       radius(contact.surface_b.radius_across)));
+      }
+      const double tolerance = 1e-7 / std::pow(scale, 5);
+      if (scale < 0.2) {
+        ++left_out;
+        continue;
+      }
+      const std::string kind = kind_of(contact, !clipped);
+      ASSERT_NEAR(measured->first, kinematics.d_dot, tolerance) << kind << "\n" << describe(pair);
+      ASSERT_NEAR(measured->second, second, tolerance) << kind << " " << scale << "\n"
+                                                       << describe(pair);
+      ++compared[kind];
+      worst[kind] = std::max(worst[kind], std::abs(measured->second - second));
+    }
+  }
+  for (const auto& [kind, count] : compared) {
+    std::printf("    %-40s %6d contacts, d'' within %.1e\n", kind.c_str(), count, worst[kind]);
+  }
+  std::printf("    left out: %d\n", left_out);
+  EXPECT_LT(left_out, kPoses / 20);
+  for (const char* kind :
+       {"face of A, face/vertex", "face of B, vertex/face", "face of B, round/face",
+        "face of A, face/round", "edge-edge, edge/edge", "curved, round/round",
+        "curved, round/edge", "curved, round/vertex", "curved, edge/round", "curved, vertex/round",
+        "curved, vertex/vertex", "curved, vertex/edge", "curved, edge/vertex",
+        "face of A, face/vertex, clipped", "face of B, vertex/face, clipped"}) {
+    EXPECT_GT(compared[kind], 0) << kind;
+  }
+}
+
+TEST(GapDerivatives, BallRollingOnAPlaneAcceleratesAsItsCentre) {
+  std::vector<Contact> contacts;
+  find_intersection(Sphere{0.5}, {{0, 0, 0.5}, Quat::Identity()}, HalfSpace{}, {}, 0.0, contacts);
+  ASSERT_EQ(contacts.size(), 1u);
+  const MovingBody ball{{{0, 0, 0.5}, Quat::Identity()},
+                        {{50.0, 0, 0}, {0, 100.0, 0}},
+                        {{0, 0, -9.81}, Vec3::Zero()}};
+  const GapKinematics kinematics =
+      gap_kinematics(contacts[0], {ball.start.position, ball.start.orientation}, ball.velocity,
+                     {Vec3::Zero(), Quat::Identity()}, {});
+  EXPECT_NEAR(kinematics.d_dot, 0.0, 1e-15);
+  const double second =
+      contacts[0].normal.dot(ball.acceleration_at(contacts[0].point_a - ball.start.position)) +
+      kinematics.curvature_acceleration;
+  EXPECT_NEAR(second, -9.81, 1e-11);  // 5000 m/s^2 of centripetal acceleration cancel
+}
+
+}  // namespace
+}  // namespace signorini::collision
