@@ -126,8 +126,10 @@ export function plotNotes(plot: Plot): string[] {
   return notes;
 }
 
-export function lineName(line: Series): string {
-  return `${line.name}, ${engineName(line.engine)}`;
+/** A line that is named after its engine is named once. */
+export function lineName({ name, engine }: Pick<Series, 'name' | 'engine'>): string {
+  const isSame = name === '' || name.toLowerCase() === engine.toLowerCase();
+  return isSame ? engineName(engine) : `${name}, ${engineName(engine)}`;
 }
 
 export function engineName(engine: string): string {

@@ -20,8 +20,10 @@ function track(check: Check, group: CheckGroup): HTMLElement | null {
 }
 
 function checkRow(check: Check, group: CheckGroup): HTMLElement {
+  // Beside an expected 0 a value is an error: more digits say nothing.
+  const digits = check.expected === 0 ? 3 : 7;
   const exact = (value: number) => h('td', { class: 'number', title: String(value) },
-    withUnit(formatNumber(value, 7), check.unit));
+    withUnit(formatNumber(value, digits), check.unit));
   return h('tr', { class: check.verdict },
     h('td', {}, verdictChip(check.verdict)),
     h('td', {}, engineName(check.engine)),

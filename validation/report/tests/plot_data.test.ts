@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import {
-  drawable, linearLimits, logLimits, merged, plotNotes, rangeOf, valueAt,
+  drawable, lineName, linearLimits, logLimits, merged, plotNotes, rangeOf, valueAt,
 } from '../src/plot_data';
 import type { Plot } from '../src/report';
 
@@ -51,6 +51,12 @@ test('what cannot be drawn is a gap', () => {
 test('the range is of what is drawn', () => {
   assert.deepEqual(rangeOf([[3, null, undefined, -1], [2]]), [-1, 3]);
   assert.equal(rangeOf([[null, undefined], []]), null);
+});
+
+test('a line is named by what it is and its engine, and not twice by its engine', () => {
+  assert.equal(lineName({ name: 'height', engine: 'bullet' }), 'height, Bullet');
+  assert.equal(lineName({ name: 'signorini', engine: 'signorini' }), 'Signorini');
+  assert.equal(lineName({ name: 'Closed form', engine: 'closed form' }), 'closed form');
 });
 
 test('rounding of a constant is drawn flat, in the middle', () => {
