@@ -184,10 +184,10 @@ Arrangement arrange(const FamilySpec& spec, Random& random) {
   if (spec.family == "spheres") return spheres(spec.size, random);
   std::string known;
   for (const std::string_view name : family_names()) {
-    known += " " + std::string(name);
+    known.append(" ").append(name);
   }
-  throw std::invalid_argument("family: must be one of" + known + ", got '" +
-                              std::string(spec.family) + "'");
+  throw std::invalid_argument("family: must be one of" + known + ", got " +
+                              std::string(spec.family));
 }
 
 double mass_of(const FamilySpec& spec, int body, Random& random) {

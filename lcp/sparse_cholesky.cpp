@@ -51,7 +51,7 @@ std::unique_ptr<SparseCholesky> make_sparse_cholesky(std::string_view name) {
   }
   std::string known;
   for (const std::string_view one : kNames) {
-    known += (known.empty() ? "" : ", ") + std::string(one);
+    known.append(known.empty() ? "" : ", ").append(one);
   }
   throw std::invalid_argument("sparse Cholesky: no back-end '" + std::string(wanted) +
                               "' in this build, which has: " + known);

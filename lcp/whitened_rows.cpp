@@ -10,6 +10,22 @@
 namespace signorini::lcp {
 namespace {
 
+constexpr int kFree = 6;  // degrees of freedom of a free body: a length the compiler can unroll
+
+inline double dot(const double* a, const double* b, int count) {
+  double sum = 0.0;
+  for (int k = 0; k < count; ++k) {
+    sum += a[k] * b[k];
+  }
+  return sum;
+}
+
+inline void add(double factor, const double* a, double* b, int count) {
+  for (int k = 0; k < count; ++k) {
+    b[k] += factor * a[k];
+  }
+}
+
 /// F of every block: W_k = F F^T.
 std::vector<Matrix> mass_roots(const BlockMass& mass) {
   std::vector<Matrix> roots(mass.block_count());
@@ -128,9 +144,10 @@ void WhitenedRows::transpose_times(const Vector& x, Vector& u) const {
   for (Index i = 0; i < rows(); ++i) {
     for (int e = row_start_[i]; e < row_start_[i + 1]; ++e) {
       const Entry& entry = entries_[e];
-      for (int k = 0; k < entry.dimension; ++k) {
-        u[entry.offset + k] += values_[entry.values + k] * x[i];
-      }
+      const double* g = values_.data() + entry.values;
+      double* target = u.data() + entry.offset;
+      entry.dimension == kFree ? add(x[i], g, target, kFree)
+                               : add(x[i], g, target, entry.dimension);
     }
   }
 }
@@ -141,9 +158,9 @@ void WhitenedRows::times(const Vector& u, Vector& y) const {
     double sum = 0.0;
     for (int e = row_start_[i]; e < row_start_[i + 1]; ++e) {
       const Entry& entry = entries_[e];
-      for (int k = 0; k < entry.dimension; ++k) {
-        sum += values_[entry.values + k] * u[entry.offset + k];
-      }
+      const double* g = values_.data() + entry.values;
+      const double* block = u.data() + entry.offset;
+      sum += entry.dimension == kFree ? dot(g, block, kFree) : dot(g, block, entry.dimension);
     }
     y[i] = sum;
   }
