@@ -27,7 +27,7 @@ constexpr int kFailed = 70;
 struct StudyOptions {
   int count;
   std::uint64_t seed = 1;
-  std::string out;  // a folder, or empty: print only
+  std::string out = {};  // a folder, or empty: print only
 };
 
 CLI::App* add_study(CLI::App& app, const std::string& name, const std::string& what,
