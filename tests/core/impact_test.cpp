@@ -501,7 +501,7 @@ TEST(ImpactInput, BadSettingsAreNamedWithValueAndBound) {
   expect_contains(refusal(scene, settings), "got 2");
   settings = {};
   settings.lcp.tolerance = 0.0;
-  expect_contains(refusal(scene, settings), "tolerance: must be > 0");
+  expect_contains(refusal(scene, settings), "tolerance: must be in (0, 1)");
   settings = {};
   settings.solver = "oracle";
   expect_contains(refusal(scene, settings), "oracle");
