@@ -19,8 +19,10 @@ struct Certificate {
   /// max_i |r_i(1)| / (1 + |q|_inf): the natural residual, for an LCP max|min(z, w)| / (1 + |q|).
   /// Its value depends on the caller's units.
   double natural_residual = kNaN;
-  /// max_i D_i |r_i(D_i)| / |q|_inf, for an LCP max|min(M_ii z_i, w_i)| / |q|. Unit-free: scaling
-  /// rows, columns or q changes nothing. With q = 0: 0 if the numerator is 0, +infinity otherwise.
+  /// max_i D_i |r_i(D_i)| / |q|_inf, for an LCP max|min(M_ii z_i, w_i)| / |q|. Unit-free: other
+  /// units of z and of w (one factor each) change nothing; rows are measured against the largest q,
+  /// so a row whose q is far below it counts for little. With q = 0: 0 if the numerator is 0,
+  /// +infinity otherwise.
   double unit_free_residual = kNaN;
   /// eps max_i (|M||z| + |q|)_i / |q|_inf: what rounding z and w to double costs the unit-free
   /// residual. No solver that returns doubles can be asked for much less.
