@@ -1,3 +1,4 @@
+#include <signorini/lcp/apgd.h>
 #include <signorini/lcp/interior_point.h>
 #include <signorini/lcp/lemke.h>
 #include <signorini/lcp/pgs.h>
@@ -29,6 +30,7 @@ std::unique_ptr<Solver> make(const SolverSettings& settings) {
 constexpr std::array kEntries = {
     Entry{"lemke", &make<Lemke, LemkeSettings>},
     Entry{"interior-point", &make<InteriorPoint, InteriorPointSettings>},
+    Entry{"apgd", &make<Apgd, ApgdSettings>},
     Entry{"pgs", &make<Pgs, PgsSettings>},
 #ifdef SIGNORINI_HAS_GMP
     Entry{"exact", &make<ExactLemke, ExactLemkeSettings>},
