@@ -14,7 +14,7 @@ struct SignalsHeld::Mask {
   sigset_t set;
 };
 
-SignalsHeld::SignalsHeld() : previous_(new Mask) {
+SignalsHeld::SignalsHeld() : previous_(std::make_unique<Mask>()) {
   sigset_t held;
   sigemptyset(&held);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
@@ -25,7 +25,6 @@ SignalsHeld::SignalsHeld() : previous_(new Mask) {
 
 SignalsHeld::~SignalsHeld() {
   pthread_sigmask(SIG_SETMASK, &previous_->set, nullptr);
-  delete previous_;
 }
 
 std::filesystem::path partial_name(const std::filesystem::path& file) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string_view>
 
 namespace signorini::lcp {
@@ -23,7 +24,7 @@ class SignalsHeld {
 
  private:
   struct Mask;
-  Mask* previous_;
+  std::unique_ptr<Mask> previous_;
 };
 
 /// A name beside `file` that no other process uses.

@@ -57,16 +57,15 @@ Vector feasible_q(const FactoredMatrix& A, unsigned seed) {
 }
 
 Problem with_matrix(const Problem& problem, MatrixForm M) {
-  Problem changed = problem;
-  changed.M = std::move(M);
-  return changed;
+  return {std::move(M), problem.q, problem.lower, problem.upper, problem.limits};
+}
+
+Problem problem_of(MatrixForm M, const Vector& q) {
+  return {std::move(M), q, {}, {}, {}};
 }
 
 Problem dense_problem(const Matrix& M, const Vector& q) {
-  Problem problem;
-  problem.M = M;
-  problem.q = q;
-  return problem;
+  return problem_of(M, q);
 }
 
 Result solve(const Problem& problem, const PgsSettings& settings = {},
@@ -89,10 +88,8 @@ PgsSettings limited(int sweeps, double tolerance = 1e-8) {
 /// what one sweep can amplify; ten times more is allowed.
 TEST(Pgs, TwentySweepsAreTheSameOverEveryForm) {
   for (const bool compliant : {false, true}) {
-    Problem factored;
     const FactoredMatrix A = random_factored(7, 40, compliant, kSeed);
-    factored.q = feasible_q(A, kSeed + 1);
-    factored.M = A;
+    const Problem factored = problem_of(A, feasible_q(A, kSeed + 1));
     const Problem sparse = with_matrix(factored, A.form());
     const Problem dense = with_matrix(factored, to_dense(A));
     const PgsSettings settings = limited(20);
@@ -108,10 +105,8 @@ TEST(Pgs, TwentySweepsAreTheSameOverEveryForm) {
 
 TEST(Pgs, SolvesRedundantFeasibleProblems) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
-    Problem problem;
-    FactoredMatrix A = random_factored(5, 30, false, seed);
-    problem.q = feasible_q(A, seed + 100);
-    problem.M = std::move(A);
+    const FactoredMatrix A = random_factored(5, 30, false, seed);
+    const Problem problem = problem_of(A, feasible_q(A, seed + 100));
     const Result result = solve(problem, limited(200000));
     EXPECT_EQ(result.status, Status::kSolved) << "seed " << seed << ": " << result.detail;
     EXPECT_EQ(result.solver, "pgs");
@@ -119,15 +114,13 @@ TEST(Pgs, SolvesRedundantFeasibleProblems) {
 }
 
 TEST(Pgs, SolvesBoxAndFreeRowsInEveryForm) {
-  Problem factored;
   const FactoredMatrix A = random_factored(7, 24, true, kSeed);
-  factored.q = feasible_q(A, kSeed + 2);
+  Problem factored = problem_of(A, feasible_q(A, kSeed + 2));
   factored.lower = Vector::Zero(24);
   factored.upper = Vector::Constant(24, kInfinity);
   factored.lower.head(4).setConstant(-kInfinity);
   factored.lower.segment(4, 8).setConstant(-0.2);
   factored.upper.segment(4, 8).setConstant(0.3);
-  factored.M = A;
   for (const Problem& problem :
        {factored, with_matrix(factored, A.form()), with_matrix(factored, to_dense(A))}) {
     const Result result = solve(problem);
@@ -152,9 +145,7 @@ Problem pushed_block(double mu, double tangential_velocity) {
   A.add_entry(0, Vector::Unit(6, 2));
   A.add_row();
   A.add_entry(0, Vector::Unit(6, 0));
-  Problem problem;
-  problem.M = std::move(A);
-  problem.q = Eigen::Vector2d(-1.0, tangential_velocity);
+  Problem problem = problem_of(std::move(A), Eigen::Vector2d(-1.0, tangential_velocity));
   problem.limits.push_back({.row = 1, .normal_row = 0, .coefficient = mu});
   return problem;
 }
@@ -177,13 +168,11 @@ TEST(Pgs, CoupledLimitSticksInsideTheLimit) {
 TEST(Pgs, CoupledLimitsOnManyRowsSatisfyTheCoupledCertificate) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     const FactoredMatrix A = random_factored(12, 30, false, seed);
-    Problem problem;
-    problem.q = feasible_q(A, seed + 50);
+    Problem problem = problem_of(A, feasible_q(A, seed + 50));
     for (int row = 1; row < 30; row += 3) {
       problem.limits.push_back({row, row - 1, 0.3});
       problem.limits.push_back({row + 1, row - 1, 0.3});
     }
-    problem.M = A;
     for (const Problem& form : {problem, with_matrix(problem, A.form())}) {
       const Result result = solve(form, limited(100000));
       ASSERT_EQ(result.status, Status::kSolved) << "seed " << seed << ": " << result.detail;
@@ -195,10 +184,8 @@ TEST(Pgs, CoupledLimitsOnManyRowsSatisfyTheCoupledCertificate) {
 }
 
 TEST(Pgs, StarvedOfSweepsEndsAtTheIterationLimit) {
-  Problem problem;
-  FactoredMatrix A = random_factored(5, 30, false, kSeed);
-  problem.q = feasible_q(A, kSeed);
-  problem.M = std::move(A);
+  const FactoredMatrix A = random_factored(5, 30, false, kSeed);
+  const Problem problem = problem_of(A, feasible_q(A, kSeed));
   for (const int sweeps : {0, 1}) {
     const Result result = solve(problem, limited(sweeps));
     EXPECT_EQ(result.status, Status::kIterationLimit);
@@ -209,10 +196,8 @@ TEST(Pgs, StarvedOfSweepsEndsAtTheIterationLimit) {
 }
 
 TEST(Pgs, OutOfTimeEndsAtTheTimeLimit) {
-  Problem problem;
-  FactoredMatrix A = random_factored(5, 30, false, kSeed);
-  problem.q = feasible_q(A, kSeed);
-  problem.M = std::move(A);
+  const FactoredMatrix A = random_factored(5, 30, false, kSeed);
+  const Problem problem = problem_of(A, feasible_q(A, kSeed));
   PgsSettings settings;
   settings.time_limit = 1e-9;
   const Result result = solve(problem, settings);
@@ -221,10 +206,8 @@ TEST(Pgs, OutOfTimeEndsAtTheTimeLimit) {
 }
 
 TEST(Pgs, WarmStartFromSolutionTakesNoSweep) {
-  Problem problem;
-  FactoredMatrix A = random_factored(5, 30, false, kSeed);
-  problem.q = feasible_q(A, kSeed);
-  problem.M = std::move(A);
+  const FactoredMatrix A = random_factored(5, 30, false, kSeed);
+  const Problem problem = problem_of(A, feasible_q(A, kSeed));
   const Result cold = solve(problem, limited(200000));
   ASSERT_EQ(cold.status, Status::kSolved);
   EXPECT_GT(cold.statistics.iterations, 1);
@@ -329,19 +312,15 @@ TEST(Pgs, ComplianceIsPartOfTheDiagonal) {
   A.mass.add_inverse(Matrix::Identity(1, 1));
   A.add_row(3.0);
   A.add_entry(0, Vector::Ones(1));
-  Problem problem;
-  problem.M = std::move(A);
-  problem.q = Vector::Constant(1, -2.0);
+  const Problem problem = problem_of(std::move(A), Vector::Constant(1, -2.0));
   const Result result = solve(problem);
   EXPECT_EQ(result.status, Status::kSolved);
   EXPECT_DOUBLE_EQ(result.z[0], 0.5);
 }
 
 TEST(Pgs, OverrelaxationReachesTheSameW) {
-  Problem problem;
-  FactoredMatrix A = random_factored(5, 30, false, kSeed);
-  problem.q = feasible_q(A, kSeed);
-  problem.M = std::move(A);
+  const FactoredMatrix A = random_factored(5, 30, false, kSeed);
+  const Problem problem = problem_of(A, feasible_q(A, kSeed));
   PgsSettings settings = limited(200000);
   const Result plain = solve(problem, settings);
   settings.relaxation = 1.5;
@@ -376,14 +355,10 @@ TEST(Pgs, NaNInTheProblemIsInvalidInput) {
 }
 
 TEST(Pgs, UsedAgainGivesTheBitsOfAFreshSolver) {
-  Problem large;
-  FactoredMatrix A = random_factored(9, 50, false, kSeed);
-  large.q = feasible_q(A, kSeed);
-  large.M = std::move(A);
-  Problem small;
-  FactoredMatrix B = random_factored(5, 12, true, kSeed + 5);
-  small.q = feasible_q(B, kSeed);
-  small.M = std::move(B);
+  const FactoredMatrix A = random_factored(9, 50, false, kSeed);
+  const Problem large = problem_of(A, feasible_q(A, kSeed));
+  const FactoredMatrix B = random_factored(5, 12, true, kSeed + 5);
+  const Problem small = problem_of(B, feasible_q(B, kSeed));
   Pgs pgs;
   Result result;
   pgs.solve(large, result);
