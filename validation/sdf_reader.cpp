@@ -329,6 +329,7 @@ Scene read(const std::string& text, const std::string& file, const std::string& 
   tinyxml2::XMLDocument xml;
   const SceneFormat format = parse_xml(text, source, xml);
   check_numbers(xml, format, source);
+  if (format == SceneFormat::kSdf && !options.skip_unsupported) check_shapes(xml, source);
   Scene scene;
   scene.source = source;
   scene.name = std::filesystem::path(source).stem().string();

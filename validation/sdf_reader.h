@@ -14,7 +14,7 @@ struct ReadOptions {
   bool skip_unsupported = false;
   /// Adds a fixed half-space z <= ground (m), friction 1, restitution 1. For a URDF, which has no
   /// world; under the pairing rule "minimum" the model's own values then decide.
-  std::optional<double> ground;
+  std::optional<double> ground = {};
 };
 
 /// Reads an SDFormat world or model, or a URDF robot, through libsdformat 12.

@@ -1,6 +1,7 @@
 #include <signorini/core/model/body.h>
 #include <signorini/validation/input_error.h>
 #include <signorini/validation/sdf_survey.h>
+#include <signorini/validation/xml_check.h>
 
 #include <algorithm>
 #include <array>
@@ -162,9 +163,8 @@ std::string SdfSurvey::unsupported(const sdf::ElementPtr& element) const {
     if (kind == "plane" && !is_in_static_model(*element)) {
       return "collision shape <plane> is supported in static models only";
     }
-    if (kind != "box" && kind != "sphere" && kind != "plane") {
-      return fmt::format("collision shape <{}> is not supported (supported: box, sphere, plane)",
-                         kind);
+    if (const std::string reason = unsupported_shape(kind, SceneFormat::kSdf); !reason.empty()) {
+      return reason;
     }
   }
   if (name == "joint" || name == "gripper" || name == "population") {

@@ -37,12 +37,11 @@ void read_contact(const XMLElement& contact, const std::string& link, UrdfExtras
   }
 }
 
-/// The shape's name if it is not supported, else empty.
-std::string unsupported_shape(const XMLElement& collision) {
+/// Why the shape is not supported, or empty.
+std::string refusal(const XMLElement& collision) {
   const XMLElement* geometry = collision.FirstChildElement("geometry");
   const XMLElement* shape = geometry == nullptr ? nullptr : geometry->FirstChildElement();
-  const std::string_view name = shape == nullptr ? "no geometry" : shape->Name();
-  return name == "box" || name == "sphere" ? "" : std::string(name);
+  return unsupported_shape(shape == nullptr ? "empty" : shape->Name(), SceneFormat::kUrdf);
 }
 
 void check_collisions(XMLElement& link, const std::string& source, bool skip_unsupported,
@@ -51,12 +50,9 @@ void check_collisions(XMLElement& link, const std::string& source, bool skip_uns
   for (XMLElement* collision = link.FirstChildElement("collision"); collision != nullptr;
        collision = next) {
     next = collision->NextSiblingElement("collision");
-    const std::string shape = unsupported_shape(*collision);
-    if (shape.empty()) continue;
-    const std::string what = fmt::format(
-        "{}: collision shape <{}> is not supported (supported: "
-        "box, sphere)",
-        locate(*collision, source), shape);
+    const std::string reason = refusal(*collision);
+    if (reason.empty()) continue;
+    const std::string what = locate(*collision, source) + ": " + reason;
     if (!skip_unsupported) throw InputError(what);
     extras.notices.push_back("skipped: " + what);
     link.DeleteChild(collision);

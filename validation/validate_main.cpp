@@ -189,7 +189,11 @@ int run(const Arguments& arguments, const std::string& command) {
     list_builtin_scenes();
     return kGood;
   }
-  Report report = run_jobs(load_jobs(arguments), arguments);
+  std::vector<Job> jobs = load_jobs(arguments);
+  // From here a stop leaves a report; before, it just ends the program.
+  std::signal(SIGINT, request_stop);
+  std::signal(SIGTERM, request_stop);
+  Report report = run_jobs(std::move(jobs), arguments);
   report.command = command;
   for (const std::string& file : write_report(report, arguments.out)) {
     fmt::print("wrote {}\n", file);
@@ -218,8 +222,6 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kGood : kUsage;
   }
-  std::signal(SIGINT, request_stop);
-  std::signal(SIGTERM, request_stop);
   try {
     return run(arguments, joined(argc, argv));
   } catch (const InputError& error) {

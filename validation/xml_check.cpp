@@ -171,7 +171,33 @@ void check_element(const XMLElement& element, SceneFormat format, const std::str
   }
 }
 
+void check_shape(const XMLElement& element, const std::string& source) {
+  if (is_without_physics(element.Name())) return;
+  if (std::string_view(element.Name()) == "collision") {
+    const XMLElement* geometry = element.FirstChildElement("geometry");
+    const XMLElement* shape = geometry == nullptr ? nullptr : geometry->FirstChildElement();
+    const std::string reason =
+        unsupported_shape(shape == nullptr ? "empty" : shape->Name(), SceneFormat::kSdf);
+    if (!reason.empty()) throw InputError(locate(element, source) + ": " + reason);
+  }
+  for (const XMLElement* child = element.FirstChildElement(); child != nullptr;
+       child = child->NextSiblingElement()) {
+    check_shape(*child, source);
+  }
+}
+
 }  // namespace
+
+std::string unsupported_shape(std::string_view shape, SceneFormat format) {
+  const bool sdf = format == SceneFormat::kSdf;
+  if (shape == "box" || shape == "sphere" || (sdf && shape == "plane")) return "";
+  return fmt::format("collision shape <{}> is not supported (supported: box, sphere{})", shape,
+                     sdf ? ", plane" : "");
+}
+
+void check_shapes(const tinyxml2::XMLDocument& document, const std::string& source) {
+  check_shape(*document.RootElement(), source);
+}
 
 SceneFormat parse_xml(const std::string& text, const std::string& source,
                       tinyxml2::XMLDocument& document) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace tinyxml2 {
 class XMLDocument;
@@ -23,6 +24,15 @@ SceneFormat parse_xml(const std::string& text, const std::string& source,
 /// @throws InputError naming file, line, model or link, element, its text and the bound.
 void check_numbers(const tinyxml2::XMLDocument& document, SceneFormat format,
                    const std::string& source);
+
+/// Empty for a collision shape that we have (SDFormat: box, sphere, plane; URDF: box, sphere), else
+/// "collision shape <cylinder> is not supported (supported: ...)".
+[[nodiscard]] std::string unsupported_shape(std::string_view shape, SceneFormat format);
+
+/// Refuses an SDFormat document with an unsupported collision shape before libsdformat builds it,
+/// which takes gigabytes for a world of thousands of models. @throws InputError naming file, line,
+/// model, link, collision and shape.
+void check_shapes(const tinyxml2::XMLDocument& document, const std::string& source);
 
 /// "FILE:12: model 'm', link 'l', collision 'c'": where an element lies.
 [[nodiscard]] std::string locate(const tinyxml2::XMLElement& element, const std::string& source);

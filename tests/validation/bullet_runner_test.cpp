@@ -36,8 +36,8 @@ TEST_P(NeutralBounce, RestitutionIsExact) {
 
 INSTANTIATE_TEST_SUITE_P(Balls, NeutralBounce,
                          testing::Values("ball-drop-e0.5", "ball-drop-e0.9", "ball-drop-e1"),
-                         [](const auto& info) {
-                           std::string name = info.param;
+                         [](const auto& scene) {
+                           std::string name = scene.param;
                            for (char& c : name) c = std::isalnum(c) ? c : '_';
                            return name;
                          });

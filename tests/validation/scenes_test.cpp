@@ -169,8 +169,8 @@ INSTANTIATE_TEST_SUITE_P(BuiltIn, QuickScenes,
                                          "ball-drop-e0.9", "ball-drop-e1", "wedge",
                                          "newtons-cradle", "ball-between-walls",
                                          "ball-between-tilted-walls", "rod-on-two-supports"),
-                         [](const auto& info) {
-                           std::string name = info.param;
+                         [](const auto& scene) {
+                           std::string name = scene.param;
                            for (char& c : name) c = std::isalnum(c) ? c : '_';
                            return name;
                          });

@@ -225,7 +225,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"unknown_frame",
                  box_model("<pose relative_to=\"nowhere\">0 0 0 0 0 0</pose>"),
                  {"nowhere"}}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& scene) { return scene.param.name; });
 
 class SdfReaderShapes : public testing::TestWithParam<const char*> {};
 
@@ -370,8 +370,8 @@ INSTANTIATE_TEST_SUITE_P(All, SharedScenes,
                                          SharedFile{"gz-sim_friction.sdf", 4},
                                          SharedFile{"gz-sim_rolling_shapes.sdf", -1, "cylinder"},
                                          SharedFile{"gz-sim_shapes.sdf", -1, "cylinder"}),
-                         [](const auto& info) {
-                           std::string name = info.param.name;
+                         [](const auto& scene) {
+                           std::string name = scene.param.name;
                            for (char& c : name)
                              c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
                            return name;

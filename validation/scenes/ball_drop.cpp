@@ -87,18 +87,26 @@ std::vector<double> apexes_of(const Track& track, double start_height) {
   return apexes;
 }
 
-/// How far apex n may be off in a first-order scheme.
+/// How far apex n may be off.
 ///
-/// In flight the semi-implicit scheme keeps g z + v^2/2 - g h v/2. A bounce happens up to one
-/// step's motion v h below the plane: g v h; the term g h v/2 changes by (1 + e) g v h/2; both
-/// count e^2 (or less) after the bounce. The apex of the grid is up to g h^2/8 lower. So each
-/// bounce adds at most 2 v h to an error that it multiplies by e^2.
+/// In flight the semi-implicit scheme keeps C = g z + v^2/2 - g h v/2. A bounce comes at a depth
+/// delta in [0, s h], s the speed, as v+ = e s followed by z += h v+:
+///
+///     C+ = e^2 C- - (1 - e^2) g delta + e (1 - e) g h s / 2.
+///
+/// So one bounce puts the apex off by at most s h max(1 - e^2 - e (1 - e)/2, e (1 - e)/2), an error
+/// that each later bounce multiplies by e^2. The highest point of the grid is up to g h^2/8 below
+/// the parabola's, and s itself differs by O(g h) from the closed form's: g h^2 a bounce.
 double apex_tolerance(const Drop& drop, double h, int bounce) {
+  const double e = drop.e;
+  const double early = 0.5 * e * (1.0 - e);
+  const double late = 1.0 - e * e - early;
   double tolerance = 0.0;
   for (int k = 0; k < bounce; ++k) {
-    tolerance = drop.e * drop.e * tolerance + 2.0 * drop.impact_speed(k) * h;
+    tolerance =
+        e * e * tolerance + drop.impact_speed(k) * h * std::max(early, late) + drop.g * h * h;
   }
-  return tolerance + drop.g * h * h;
+  return tolerance;
 }
 
 void check_apexes(const Scene& scene, const Drop& drop, const Track& track, SceneReport& report) {

@@ -47,9 +47,9 @@ std::string percent(double value) {
   return fmt::format("{:.3g}", value);
 }
 
-/// Runs one scheme at the scene's step and at half of it.
-void try_scheme(const Scene& scene, const RunOptions& options, const TimeStepSettings& settings,
-                Table& table, SceneReport& report) {
+/// Runs one scheme at the scene's step and at half of it. @return the run at the scene's step
+Track try_scheme(const Scene& scene, const RunOptions& options, const TimeStepSettings& settings,
+                 Table& table, SceneReport& report) {
   const Track track = run_ours(scene, settings, options);
   Scene finer_scene = scene;
   finer_scene.step = 0.5 * scene.step;
@@ -77,7 +77,7 @@ void try_scheme(const Scene& scene, const RunOptions& options, const TimeStepSet
                .unit = "1",
                .reason = "a first-order scheme drifts by O(w h) each turn: shown, not judged"},
               drift, 0.0));
-    return;
+    return track;
   }
   const double spin = velocity(scene.bodies[kTop], scene.state[kTop]).angular.norm();
   const double wh = spin * scene.step;
@@ -89,12 +89,14 @@ void try_scheme(const Scene& scene, const RunOptions& options, const TimeStepSet
        .reason = "fourth order: (w h)^5/120 a step is the Taylor remainder of a turn by w h, and "
                  "they add up"},
       drift, 0.0, bound));
-  report.checks.push_back(absolute({.name = name(settings) + ": order of the energy drift",
-                                    .reference = "order of the scheme",
-                                    .unit = "1",
-                                    .reason = "halving the step divides the drift of RK4 by 2^4 "
-                                              "(or 2^5: its leading term may cancel)"},
-                                   std::min(order, 5.0), 4.5, 0.75));
+  report.checks.push_back(
+      at_most({.name = name(settings) + ": order of the energy drift, below 4 by",
+               .reference = "order of the scheme",
+               .unit = "1",
+               .reason = "halving the step divides the drift of RK4 by 2^4 or more; 0.25 for the "
+                         "terms of the next order"},
+              4.0 - order, 0.25));
+  return track;
 }
 
 }  // namespace
@@ -102,6 +104,11 @@ void try_scheme(const Scene& scene, const RunOptions& options, const TimeStepSet
 /// Energy and angular momentum are constant.
 void check_torque_free_spin(const Scene& scene, const RunOptions& options, SceneReport& report) {
   const Runs runs = run_engines(scene, options, report);
+  Plot plot = plot_over_time("Rotational energy", "energy [J]", {},
+                             [](const Track& track, std::size_t k) { return track.kinetic[k]; });
+  if (runs.bullet) {
+    plot.series.push_back({"Bullet", "bullet", runs.bullet->time, runs.bullet->kinetic});
+  }
   Table table;
   table.title = "Drift of the orientation schemes";
   table.header = {"scheme", "energy drift at h", "energy drift at h/2", "order", "drift of |L|"};
@@ -112,7 +119,9 @@ void check_torque_free_spin(const Scene& scene, const RunOptions& options, Scene
         TimeStepSettings settings = step_settings(scene);
         settings.integrator = integrator;
         settings.orientation = orientation;
-        try_scheme(scene, options, settings, table, report);
+        const Track track = try_scheme(scene, options, settings, table, report);
+        plot.series.push_back(
+            {"Signorini: " + name(settings), "signorini", track.time, track.kinetic});
       }
     }
   }
@@ -136,10 +145,14 @@ void check_torque_free_spin(const Scene& scene, const RunOptions& options, Scene
     }
   }
   report.tables.push_back(table);
-  report.plots.push_back(plot_over_time(
-      "Rotational energy", "energy [J]", runs,
-      [](const Track& track, std::size_t k) { return track.kinetic[k]; },
-      [&](double) { return kinetic_energy(scene.bodies, scene.state); }));
+  const double energy = kinetic_energy(scene.bodies, scene.state);
+  plot.series.push_back({"closed form", "closed form", {0.0, scene.duration}, {energy, energy}});
+  report.plots.push_back(plot);
+  if (options.signorini) {
+    report.notices.push_back(
+        "the time stepper's default integrator is semi-implicit, of first order: it does not hold "
+        "the energy of a fast asymmetric spin. Runge-Kutta 4 is judged here.");
+  }
 }
 
 }  // namespace signorini::validation
