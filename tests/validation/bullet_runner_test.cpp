@@ -42,11 +42,12 @@ INSTANTIATE_TEST_SUITE_P(Balls, NeutralBounce,
                            return name;
                          });
 
-TEST(BulletRunner, DefaultProfileEatsRestitution) {
+TEST(BulletRunner, DefaultProfileDoesNotKeepRestitution) {
+  // Shallow overlap is pushed out through the velocity, and contacts that are still apart take
+  // gap/step from it: which of the two acts depends on where the last step ends.
   const Scene scene = builtin("ball-drop-e0.9");
-  const Track track = run_bullet(scene, BulletProfile::bullet_default());
-  const auto [after, before] = first_bounce(track);
-  EXPECT_LT(after, 0.85 * before) << "the traps of baselines.md: speculative contacts";
+  const auto [after, before] = first_bounce(run_bullet(scene, BulletProfile::bullet_default()));
+  EXPECT_GT(std::abs(after / before - 0.9), 0.01);
 }
 
 TEST(BulletRunner, PairMaterialFollowsTheScenesRuleNotBulletsProduct) {

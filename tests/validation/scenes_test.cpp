@@ -114,7 +114,7 @@ TEST(GenericChecks, EnergyThatRisesFails) {
   SceneReport honest;
   add_energy_check(scene, runs, honest);
   EXPECT_EQ(honest.verdict(), Verdict::kPass);
-  runs.signorini->kinetic.back() *= 1.01;
+  runs.signorini->kinetic.back() *= 1.05;
   SceneReport tampered;
   add_energy_check(scene, runs, tampered);
   EXPECT_EQ(tampered.verdict(), Verdict::kFail);
