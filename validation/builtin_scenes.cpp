@@ -67,9 +67,9 @@ SceneReport validate_builtin(const BuiltinScene& builtin, const RunOptions& opti
   SceneReport report = start_report(scene);
   builtin.check(scene, options, report);
   // What a scene is there to show comes before the checks that every scene has.
-  std::stable_partition(
-      report.checks.begin(), report.checks.end(),
-      [](const Check& check) { return check.reference.starts_with("closed form"); });
+  std::stable_partition(report.checks.begin(), report.checks.end(), [](const Check& check) {
+    return check.reference.starts_with("closed form");
+  });
   return report;
 }
 
