@@ -149,7 +149,8 @@ void check_rest(const Drop& drop, const Scene& scene, const Track& track, SceneR
                        .unit = "m",
                        .reason =
                            "e = 0: the ball stays on the plane; overlap up to 1e-10 m is "
-                           "tolerated by the projection, and 1e-9 m by the solver"};
+                           "tolerated by the projection, and h times the velocity's "
+                           "tolerance by the step"};
   report.checks.push_back(track.engine == "signorini" ? absolute(text, end, 0.0, 1e-9)
                                                       : shown(text, end, 0.0));
 }

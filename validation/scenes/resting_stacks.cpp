@@ -82,13 +82,14 @@ void check_stands(const Scene& scene, const RunOptions& options, const std::stri
   const std::size_t levels = scene.bodies.size() - 1;
   runs.for_each([&](const Track& track) {
     const double t = track.time.back();
-    const CheckText text{.name = what,
-                         .engine = track.engine,
-                         .unit = "m",
-                         .reason =
-                             "closed form: no motion; each step's velocities are solved to "
-                             "1e-9 (1 + |q|) m/s, and the overlap that this makes is pushed "
-                             "out above 1e-10 m"};
+    const CheckText text{
+        .name = what,
+        .engine = track.engine,
+        .unit = "m",
+        .reason =
+            "closed form: no motion; each step's velocities are solved to "
+            "the tolerance times (1 + |q|), and the overlap that this makes is pushed "
+            "out above 1e-10 m"};
     double most = 0.0;
     for (std::size_t body = 0; body < levels; ++body) {
       most = std::max(most, greatest_motion(track, body));

@@ -56,7 +56,7 @@ void check_slope(const Scene& scene, const RunOptions& options, SceneReport& rep
                            .unit = "m",
                            .reason =
                                "friction holds: no motion; each step's velocity is solved to "
-                               "1e-9 (1 + |q|) m/s"};
+                               "the tolerance times (1 + |q|)"};
       const double bound = step_settings(scene).lcp.tolerance * (1.0 + fastest) * t;
       report.checks.push_back(
           ours ? absolute(text, distance(slope, track, track.size() - 1), 0.0, bound)
@@ -78,7 +78,7 @@ void check_slope(const Scene& scene, const RunOptions& options, SceneReport& rep
                              .engine = track.engine,
                              .reference = "closed form of the scheme",
                              .unit = "m",
-                             .reason = "errors of 1e-9 (1 + |q|) m/s a step, added up"};
+                             .reason = "errors of the tolerance times (1 + |q|) a step, added up"};
     const double scheme = 0.5 * slope.acceleration * t * (t + h);
     report.checks.push_back(ours ? absolute(discrete, went, scheme, solver)
                                  : shown(discrete, went, scheme));
