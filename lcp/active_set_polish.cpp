@@ -139,7 +139,9 @@ double ActiveSetPolish::evaluate() {
     scaled_w_[i] = scaled_->scale_w(i, w_[i]);
     rounded_[i] = std::max(0.0, static_cast<double>(z_[i]));
     if (place_[i] >= 0) {
-      const double error = static_cast<double>(std::abs(scaled_w_[i])) / magnitude_[i];
+      // A row with q_i = 0 (a friction cone) has magnitude 0 at z = 0: no error, not 0 / 0.
+      const double error =
+          scaled_w_[i] == 0.0L ? 0.0 : static_cast<double>(std::abs(scaled_w_[i])) / magnitude_[i];
       worst = error <= worst ? worst : error;  // keeps a NaN
     }
   }

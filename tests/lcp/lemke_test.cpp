@@ -1,4 +1,7 @@
+#include <signorini/lcp/active_set_polish.h>
+#include <signorini/lcp/best_iterate.h>
 #include <signorini/lcp/lemke.h>
+#include <signorini/lcp/scaled_lcp.h>
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +10,7 @@
 #include <numeric>
 #include <random>
 #include <stdexcept>
+#include <vector>
 
 namespace signorini::lcp {
 namespace {
@@ -210,6 +214,32 @@ TEST(Lemke, VelocitiesDoNotDependOnTheOrderOfRedundantContacts) {
         solve(lcp(P * std::get<Matrix>(problem.M) * P.transpose(), P * problem.q));
     ASSERT_TRUE(is_solved(result.status));
     EXPECT_LE((P.transpose() * result.w - w).lpNorm<Eigen::Infinity>(), 1e-13);
+  }
+}
+
+// The cone row of a sliding contact is active and has q = 0: at z = 0 nothing measures its error.
+TEST(ActiveSetPolish, SolvesAnActiveSetWithRowsOfZeroQ) {
+  for (const double mass : {1.0, 1e3, 1e6}) {
+    SCOPED_TRACE(mass);
+    Problem problem = pyramid_friction(0.25, 4.0);
+    Matrix M = to_dense(problem.M);
+    M.topLeftCorner(5, 5) /= mass;
+    problem.M = M;
+    ScaledLcp scaled;
+    ASSERT_TRUE(scaled.assign(problem));
+    // Normal, the direction against the sliding, the slip speed.
+    std::vector<char> active{1, 0, 1, 0, 0, 1};
+    BestIterate best;
+    best.reset(problem);
+    ActiveSetPolish polish;
+    polish.reset_counts();
+    EXPECT_TRUE(
+        polish.run(problem, scaled, {.tolerance = 1e-12}, Deadline(kInfinity), active, best));
+    EXPECT_EQ(polish.counts().rounds, 0);
+    EXPECT_FALSE(polish.counts().orthogonal);
+    EXPECT_NEAR(best.z()[0], mass, 1e-14 * mass);
+    EXPECT_NEAR(best.z()[2], 0.25 * mass, 1e-14 * mass);
+    EXPECT_NEAR(best.z()[5], 3.75, 1e-14 * 3.75);
   }
 }
 
