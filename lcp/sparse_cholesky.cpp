@@ -16,12 +16,23 @@ namespace {
 class EigenSimplicial final : public SparseCholesky {
  public:
   [[nodiscard]] std::string_view name() const override { return "eigen"; }
-  void analyse(const SparseMatrix& lower) override { factor_.analyzePattern(lower); }
+  void analyse(const SparseMatrix& lower) override {
+    if (lower.rows() > 0) {
+      factor_.analyzePattern(lower);
+    }
+  }
   [[nodiscard]] bool factor(const SparseMatrix& lower) override {
+    if (lower.rows() == 0) {
+      return true;
+    }
     factor_.factorize(lower);
     return factor_.info() == Eigen::Success && (factor_.vectorD().array() > 0.0).all();
   }
-  void solve(Vector& x) override { x = factor_.solve(x).eval(); }
+  void solve(Vector& x) override {
+    if (x.size() > 0) {
+      x = factor_.solve(x).eval();
+    }
+  }
 
  private:
   Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>> factor_;

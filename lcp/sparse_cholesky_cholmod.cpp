@@ -50,6 +50,9 @@ class Cholmod final : public SparseCholesky {
 
   void analyse(const SparseMatrix& lower) override {
     cholmod_free_factor(&factor_, &common_);
+    if (lower.rows() == 0) {
+      return;
+    }
     cholmod_sparse view = view_of(lower);
     factor_ = cholmod_analyze(&view, &common_);
     if (factor_ == nullptr) {
@@ -59,6 +62,9 @@ class Cholmod final : public SparseCholesky {
   }
 
   [[nodiscard]] bool factor(const SparseMatrix& lower) override {
+    if (lower.rows() == 0) {
+      return true;
+    }
     const OneThread guard;
     cholmod_sparse view = view_of(lower);
     cholmod_factorize(&view, factor_, &common_);
@@ -66,6 +72,9 @@ class Cholmod final : public SparseCholesky {
   }
 
   void solve(Vector& x) override {
+    if (x.size() == 0) {
+      return;
+    }
     const OneThread guard;
     cholmod_dense right{};
     right.nrow = static_cast<std::size_t>(x.size());

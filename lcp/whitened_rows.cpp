@@ -1,16 +1,31 @@
 #include <signorini/lcp/whitened_rows.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <limits>
+#include <numeric>
 #include <stdexcept>
-#include <utility>
 
 namespace signorini::lcp {
 namespace {
 
-constexpr int kFree = 6;  // degrees of freedom of a free body: a length the compiler can unroll
+// A direction in which no row of a body moves it by more than this, of the row's length, is left
+// out: it contributes its square to G G^T, whose diagonal is one.
+constexpr double kNoMotion = 1e-11;
+
+// The two lengths of an entry that the compiler gets to unroll: a free body, and one that its rows
+// move in three directions only.
+constexpr int kFree = 6;
+constexpr int kThree = 3;
+
+template <int kSize>
+inline double dot(const double* a, const double* b) {
+  double sum = 0.0;
+  for (int k = 0; k < kSize; ++k) {
+    sum += a[k] * b[k];
+  }
+  return sum;
+}
 
 inline double dot(const double* a, const double* b, int count) {
   double sum = 0.0;
@@ -26,178 +41,474 @@ inline void add(double factor, const double* a, double* b, int count) {
   }
 }
 
-/// F of every block: W_k = F F^T.
-std::vector<Matrix> mass_roots(const BlockMass& mass) {
-  std::vector<Matrix> roots(mass.block_count());
-  for (int k = 0; k < mass.block_count(); ++k) {
-    const int d = mass.dimension(k);
-    Matrix W(d, d);
-    Vector unit(d);
-    for (int j = 0; j < d; ++j) {
-      unit.setZero();
-      unit[j] = 1.0;
-      mass.apply_inverse(k, unit.data(), W.col(j).data());
+/// out(r, c) += factor g1[r] g2[c] for r >= c or for all r; column c of out starts at starts[c].
+template <bool kLower>
+inline void add_outer(double factor, const double* g1, int rows, const double* g2, int columns,
+                      double* out, const int* starts) {
+  for (int c = 0; c < columns; ++c) {
+    const double value = factor * g2[c];
+    double* column = out + starts[c];
+    for (int r = kLower ? c : 0; r < rows; ++r) {
+      column[r] += value * g1[r];
     }
-    roots[k] = Eigen::LLT<Matrix>(0.5 * (W + W.transpose())).matrixL();
   }
-  return roots;
+}
+
+template <bool kLower>
+inline void add_outer_fast(double factor, const double* g1, int rows, const double* g2, int columns,
+                           double* out, const int* starts) {
+  if (rows == kThree && columns == kThree) {
+    add_outer<kLower>(factor, g1, kThree, g2, kThree, out, starts);
+  } else if (rows == kFree && columns == kFree) {
+    add_outer<kLower>(factor, g1, kFree, g2, kFree, out, starts);
+  } else {
+    add_outer<kLower>(factor, g1, rows, g2, columns, out, starts);
+  }
+}
+
+/// The lower triangle of W (d x d, column-major) becomes F with W = F F^T; the upper one zero. A
+/// direction without inverse mass gets a zero column.
+void factor_in_place(double* W, int d) {
+  double largest = 0.0;
+  for (int k = 0; k < d; ++k) {
+    largest = std::max(largest, W[k * d + k]);
+  }
+  const double least = largest * std::numeric_limits<double>::epsilon() * d;
+  for (int c = 0; c < d; ++c) {
+    double* column = W + c * d;
+    std::fill(column, column + c, 0.0);
+    if (!(column[c] > least)) {
+      std::fill(column + c, column + d, 0.0);
+      continue;
+    }
+    const double root = std::sqrt(column[c]);
+    column[c] = root;
+    for (int r = c + 1; r < d; ++r) {
+      column[r] /= root;
+    }
+    for (int k = c + 1; k < d; ++k) {
+      for (int r = k; r < d; ++r) {
+        W[k * d + r] -= column[r] * column[k];
+      }
+    }
+  }
 }
 
 }  // namespace
 
 void WhitenedRows::set(const FactoredMatrix& A) {
-  const std::vector<Matrix> roots = mass_roots(A.mass);
-  const int n = A.rows();
-  degrees_of_freedom_ = A.degrees_of_freedom();
-  row_start_.assign(1, 0);
-  entries_.clear();
-  values_.clear();
-  scale_.resize(n);
-  compliance_.resize(n);
-  for (int i = 0; i < n; ++i) {
-    const std::size_t first_value = values_.size();
-    double diagonal = A.compliance(i);
-    for (const FactoredMatrix::Entry& entry : A.entries(i)) {
-      const int d = A.mass.dimension(entry.block);
-      entries_.push_back({A.mass.offset(entry.block), d, static_cast<int>(values_.size())});
-      values_.resize(values_.size() + d);
-      Eigen::Map<Vector> g(values_.data() + entries_.back().values, d);
-      g.noalias() = roots[entry.block].transpose() * Eigen::Map<const Vector>(A.values(entry), d);
-      diagonal += g.squaredNorm();
-    }
-    row_start_.push_back(static_cast<int>(entries_.size()));
-    scale_[i] = diagonal > 0.0 ? std::sqrt(diagonal) : 1.0;
-    compliance_[i] = A.compliance(i) / (scale_[i] * scale_[i]);
-    std::for_each(values_.begin() + first_value, values_.end(),
-                  [s = scale_[i]](double& value) { value /= s; });
-  }
-  set_pattern(A);
+  each_row_.resize(A.rows() + 1);
+  std::iota(each_row_.begin(), each_row_.end(), 0);
+  set(A, each_row_);
 }
 
-void WhitenedRows::set_pattern(const FactoredMatrix& A) {
-  // The pairs of blocks that share a row, by column block then row block.
-  std::map<std::pair<int, int>, int> pairs;
-  for (int k = 0; k < A.mass.block_count(); ++k) {
-    pairs[{k, k}] = 0;
+void WhitenedRows::set(const FactoredMatrix& A, std::span<const int> group_start) {
+  if (group_start.empty() || group_start.front() != 0 || group_start.back() != A.rows()) {
+    throw std::invalid_argument("WhitenedRows: group_start must go from 0 to the number of rows");
   }
-  for (int i = 0; i < A.rows(); ++i) {
-    for (const auto& one : A.entries(i)) {
-      for (const auto& other : A.entries(i)) {
-        if (one.block > other.block) {
-          pairs[{other.block, one.block}] = 0;
+  take_over(A, group_start);
+  whiten(A);
+  scale_rows(A);
+  compress(A.mass);
+  set_pattern(A.mass.block_count());
+}
+
+/// Groups, entries and J's numbers. A row that misses a body of its group gets zeros there.
+void WhitenedRows::take_over(const FactoredMatrix& A, std::span<const int> group_start) {
+  groups_.clear();
+  entries_.clear();
+  values_.clear();
+  entry_of_body_.assign(A.mass.block_count(), -1);
+  for (std::size_t g = 0; g + 1 < group_start.size(); ++g) {
+    const int first = group_start[g];
+    const int last = group_start[g + 1];
+    if (first >= last) {
+      throw std::invalid_argument("WhitenedRows: group_start must increase");
+    }
+    Group group{first, static_cast<int>(entries_.size()), static_cast<int>(values_.size()), 0};
+    for (int i = first; i < last; ++i) {
+      for (const FactoredMatrix::Entry& entry : A.entries(i)) {
+        if (entry_of_body_[entry.block] < 0) {
+          entry_of_body_[entry.block] = static_cast<int>(entries_.size());
+          const int dimension = A.mass.dimension(entry.block);
+          entries_.push_back({entry.block, dimension, 0, group.width});
+          group.width += dimension;
+        }
+      }
+    }
+    values_.resize(values_.size() + static_cast<std::size_t>(last - first) * group.width, 0.0);
+    for (int i = first; i < last; ++i) {
+      double* row = values_.data() + group.values + (i - first) * group.width;
+      for (const FactoredMatrix::Entry& entry : A.entries(i)) {
+        const Entry& mine = entries_[entry_of_body_[entry.block]];
+        std::copy_n(A.values(entry), mine.dimension, row + mine.column);
+      }
+    }
+    for (std::size_t e = group.entry; e < entries_.size(); ++e) {
+      entry_of_body_[entries_[e].body] = -1;
+    }
+    groups_.push_back(group);
+  }
+  groups_.push_back(
+      {A.rows(), static_cast<int>(entries_.size()), static_cast<int>(values_.size()), 0});
+}
+
+void WhitenedRows::find_roots(const BlockMass& mass) {
+  root_start_.assign(1, 0);
+  roots_.clear();
+  for (int k = 0; k < mass.block_count(); ++k) {
+    const int d = mass.dimension(k);
+    const int start = root_start_.back();
+    root_start_.push_back(start + d * d);
+    roots_.resize(root_start_.back());
+    work_.assign(d, 0.0);
+    double* W = roots_.data() + start;
+    for (int j = 0; j < d; ++j) {
+      work_[j] = 1.0;
+      mass.apply_inverse(k, work_.data(), W + j * d);
+      work_[j] = 0.0;
+    }
+    for (int j = 0; j < d; ++j) {
+      for (int i = j + 1; i < d; ++i) {
+        W[j * d + i] = 0.5 * (W[j * d + i] + W[i * d + j]);
+      }
+    }
+    factor_in_place(W, d);
+  }
+}
+
+/// Every entry's numbers J_ik become J_ik F_k.
+void WhitenedRows::whiten(const FactoredMatrix& A) {
+  find_roots(A.mass);
+  for (int g = 0; g < groups(); ++g) {
+    double* row = values_.data() + groups_[g].values;
+    for (int i = 0; i < group_rows(g); ++i, row += groups_[g].width) {
+      for (int e = groups_[g].entry; e < groups_[g + 1].entry; ++e) {
+        const Entry& entry = entries_[e];
+        const double* F = roots_.data() + root_start_[entry.body];
+        double* numbers = row + entry.column;
+        for (int c = 0; c < entry.dimension; ++c) {  // F is lower: column c ends what c needs
+          const double* column = F + c * entry.dimension;
+          numbers[c] = dot(column + c, numbers + c, entry.dimension - c);
         }
       }
     }
   }
-  lower_.resize(degrees_of_freedom_, degrees_of_freedom_);
+}
+
+void WhitenedRows::scale_rows(const FactoredMatrix& A) {
+  scale_.resize(A.rows());
+  compliance_.resize(A.rows());
+  for (int g = 0; g < groups(); ++g) {
+    double* row = values_.data() + groups_[g].values;
+    const int width = groups_[g].width;
+    double largest = 0.0;
+    for (int i = 0; i < group_rows(g); ++i) {
+      const double* numbers = row + i * width;
+      largest = std::max(largest, A.compliance(groups_[g].row + i) + dot(numbers, numbers, width));
+    }
+    const double scale = largest > 0.0 ? std::sqrt(largest) : 1.0;
+    for (int i = 0; i < group_rows(g); ++i) {
+      scale_[groups_[g].row + i] = scale;
+      compliance_[groups_[g].row + i] = A.compliance(groups_[g].row + i) / (scale * scale);
+    }
+    for (int k = 0; k < group_rows(g) * width; ++k) {
+      row[k] /= scale;
+    }
+  }
+}
+
+/// Gram-Schmidt, twice: adds to Q what the row moves the body in and Q does not span.
+void WhitenedRows::extend_basis(int body, const double* row) {
+  const int start = root_start_[body];
+  const int d = static_cast<int>(std::lround(std::sqrt(root_start_[body + 1] - start)));
+  const int rank = rank_[body];
+  double* Q = basis_.data() + start;
+  std::copy_n(row, d, work_.data());
+  double before = dot(row, row, d);
+  for (int pass = 0; pass < 4; ++pass) {
+    for (int c = 0; c < rank; ++c) {
+      add(-dot(Q + c * d, work_.data(), d), Q + c * d, work_.data(), d);
+    }
+    const double after = dot(work_.data(), work_.data(), d);
+    if (!(after > kNoMotion * kNoMotion)) {
+      return;
+    }
+    const bool settled = after > 0.25 * before;  // little was left to remove: orthogonal to Q
+    before = after;
+    if (settled) {
+      break;
+    }
+  }
+  const double length = std::sqrt(before);
+  for (int k = 0; k < d; ++k) {
+    Q[rank * d + k] = work_[k] / length;
+  }
+  ++rank_[body];
+}
+
+/// Finds Q, writes every row in its coordinates and closes the gaps that leaves.
+void WhitenedRows::compress(const BlockMass& mass) {
+  const int bodies = mass.block_count();
+  rank_.assign(bodies, 0);
+  basis_.resize(roots_.size());
+  int largest = 0;
+  for (int k = 0; k < bodies; ++k) {
+    largest = std::max(largest, mass.dimension(k));
+  }
+  work_.resize(std::max(largest, 1));
+  for (int g = 0; g < groups(); ++g) {
+    const double* row = values_.data() + groups_[g].values;
+    for (int i = 0; i < group_rows(g); ++i, row += groups_[g].width) {
+      for (int e = groups_[g].entry; e < groups_[g + 1].entry; ++e) {
+        if (rank_[entries_[e].body] < entries_[e].dimension) {
+          extend_basis(entries_[e].body, row + entries_[e].column);
+        }
+      }
+    }
+  }
+  body_offset_.assign(1, 0);
+  for (int k = 0; k < bodies; ++k) {
+    body_offset_.push_back(body_offset_.back() + rank_[k]);
+  }
+  degrees_of_freedom_ = body_offset_.back();
+
+  double* out = values_.data();
+  for (int g = 0; g < groups(); ++g) {
+    Group& group = groups_[g];
+    const double* row = values_.data() + group.values;
+    group.values = static_cast<int>(out - values_.data());
+    for (int i = 0; i < group_rows(g); ++i, row += group.width) {
+      for (int e = group.entry; e < groups_[g + 1].entry; ++e) {
+        const Entry& entry = entries_[e];
+        const int d = entry.dimension;
+        const int rank = rank_[entry.body];
+        const double* Q = basis_.data() + root_start_[entry.body];
+        std::copy_n(row + entry.column, d, work_.data());
+        if (rank == d) {
+          std::copy_n(work_.data(), d, out);
+        } else {
+          for (int c = 0; c < rank; ++c) {
+            out[c] = dot(Q + c * d, work_.data(), d);
+          }
+        }
+        out += rank;
+      }
+    }
+    group.width = 0;
+    for (int e = group.entry; e < groups_[g + 1].entry; ++e) {
+      Entry& entry = entries_[e];
+      entry.dimension = rank_[entry.body];
+      entry.offset = body_offset_[entry.body];
+      entry.column = group.width;
+      group.width += entry.dimension;
+    }
+  }
+  groups_.back().values = static_cast<int>(out - values_.data());
+}
+
+void WhitenedRows::set_pattern(int bodies) {
+  // Every pair of entries of every group, then sorted by the pair's smaller body.
+  pair_column_.clear();
+  pair_row_.clear();
+  for (int k = 0; k < bodies; ++k) {  // every body has its diagonal block
+    pair_column_.push_back(k);
+    pair_row_.push_back(k);
+  }
+  for (int g = 0; g < groups(); ++g) {
+    for (int e1 = groups_[g].entry; e1 < groups_[g + 1].entry; ++e1) {
+      for (int e2 = groups_[g].entry; e2 < groups_[g + 1].entry; ++e2) {
+        if (entries_[e1].body >= entries_[e2].body) {
+          pair_row_.push_back(entries_[e1].body);
+          pair_column_.push_back(entries_[e2].body);
+        }
+      }
+    }
+  }
+  const int incidences = static_cast<int>(pair_row_.size());
+  column_bucket_.assign(bodies + 1, 0);
+  for (const int column : pair_column_) {
+    ++column_bucket_[column + 1];
+  }
+  std::partial_sum(column_bucket_.begin(), column_bucket_.end(), column_bucket_.begin());
+  sorted_.resize(incidences);
+  for (int k = 0; k < incidences; ++k) {
+    sorted_[column_bucket_[pair_column_[k]]++] = k;
+  }  // column_bucket_[q] is now the end of q
+
   first_column_start_.clear();
   column_starts_.clear();
   diagonal_position_.resize(degrees_of_freedom_);
-  std::vector<int> outer{0};
-  std::vector<int> inner;
-  int number = 0;
-  for (auto column = pairs.begin(); column != pairs.end();) {
-    const int block = column->first.first;
-    auto end = column;
-    const int first_pair = number;
-    while (end != pairs.end() && end->first.first == block) {
-      end->second = number++;
+  pair_of_entries_.resize(incidences);
+  pair_of_row_.assign(bodies, -1);
+  outer_.assign(1, 0);
+  inner_.clear();
+  for (int q = 0, begin = 0; q < bodies; begin = column_bucket_[q++]) {
+    rows_of_column_.clear();
+    for (int k = begin; k < column_bucket_[q]; ++k) {
+      const int p = pair_row_[sorted_[k]];
+      if (pair_of_row_[p] < 0) {
+        pair_of_row_[p] = 0;
+        rows_of_column_.push_back(p);
+      }
+    }
+    std::sort(rows_of_column_.begin(), rows_of_column_.end());
+    const int first_pair = static_cast<int>(first_column_start_.size());
+    for (const int p : rows_of_column_) {
+      pair_of_row_[p] = static_cast<int>(first_column_start_.size());
       first_column_start_.push_back(static_cast<int>(column_starts_.size()));
-      column_starts_.resize(column_starts_.size() + A.mass.dimension(block));
-      ++end;
+      column_starts_.resize(column_starts_.size() + rank_[q]);
     }
-    for (int c = 0; c < A.mass.dimension(block); ++c) {
-      int pair = first_pair;
-      for (auto it = column; it != end; ++it, ++pair) {
-        const int row_block = it->first.second;
-        const int skip = row_block == block ? c : 0;  // the lower triangle only
-        column_starts_[first_column_start_[pair] + c] = static_cast<int>(inner.size()) - skip;
-        if (row_block == block) {
-          diagonal_position_[A.mass.offset(block) + c] = static_cast<int>(inner.size());
-        }
-        for (int r = skip; r < A.mass.dimension(row_block); ++r) {
-          inner.push_back(A.mass.offset(row_block) + r);
-        }
-      }
-      outer.push_back(static_cast<int>(inner.size()));
+    for (int k = begin; k < column_bucket_[q]; ++k) {
+      pair_of_entries_[sorted_[k]] = pair_of_row_[pair_row_[sorted_[k]]];
     }
-    column = end;
-  }
-  lower_.resizeNonZeros(static_cast<Index>(inner.size()));
-  std::copy(outer.begin(), outer.end(), lower_.outerIndexPtr());
-  std::copy(inner.begin(), inner.end(), lower_.innerIndexPtr());
-
-  pair_of_entries_.clear();
-  for (int i = 0; i < A.rows(); ++i) {
-    for (const auto& one : A.entries(i)) {
-      for (const auto& other : A.entries(i)) {
-        if (one.block >= other.block) {
-          pair_of_entries_.push_back(pairs.at({other.block, one.block}));
+    for (int c = 0; c < rank_[q]; ++c) {
+      for (std::size_t k = 0; k < rows_of_column_.size(); ++k) {
+        const int p = rows_of_column_[k];
+        const int skip = p == q ? c : 0;  // the lower triangle only
+        column_starts_[first_column_start_[first_pair + k] + c] =
+            static_cast<int>(inner_.size()) - skip;
+        if (p == q) {
+          diagonal_position_[body_offset_[q] + c] = static_cast<int>(inner_.size());
+        }
+        for (int r = skip; r < rank_[p]; ++r) {
+          inner_.push_back(body_offset_[p] + r);
         }
       }
+      outer_.push_back(static_cast<int>(inner_.size()));
+    }
+    for (const int p : rows_of_column_) {
+      pair_of_row_[p] = -1;
     }
   }
+  // The pairs of bodies with themselves were only there to be in the pattern.
+  pair_of_entries_.erase(pair_of_entries_.begin(), pair_of_entries_.begin() + bodies);
+  lower_.resize(degrees_of_freedom_, degrees_of_freedom_);
+  lower_.resizeNonZeros(static_cast<Index>(inner_.size()));
+  std::copy(outer_.begin(), outer_.end(), lower_.outerIndexPtr());
+  std::copy(inner_.begin(), inner_.end(), lower_.innerIndexPtr());
 }
 
 void WhitenedRows::transpose_times(const Vector& x, Vector& u) const {
   u.setZero(degrees_of_freedom_);
-  for (Index i = 0; i < rows(); ++i) {
-    for (int e = row_start_[i]; e < row_start_[i + 1]; ++e) {
-      const Entry& entry = entries_[e];
-      const double* g = values_.data() + entry.values;
-      double* target = u.data() + entry.offset;
-      entry.dimension == kFree ? add(x[i], g, target, kFree)
-                               : add(x[i], g, target, entry.dimension);
+  for (int g = 0; g < groups(); ++g) {
+    const double* row = values_.data() + groups_[g].values;
+    for (int i = groups_[g].row; i < groups_[g + 1].row; ++i) {
+      for (int e = groups_[g].entry; e < groups_[g + 1].entry; ++e) {
+        double* target = u.data() + entries_[e].offset;
+        const int d = entries_[e].dimension;
+        if (d == kThree) {
+          add(x[i], row, target, kThree);
+        } else if (d == kFree) {
+          add(x[i], row, target, kFree);
+        } else {
+          add(x[i], row, target, d);
+        }
+        row += d;
+      }
     }
   }
 }
 
 void WhitenedRows::times(const Vector& u, Vector& y) const {
   y.resize(rows());
-  for (Index i = 0; i < rows(); ++i) {
-    double sum = 0.0;
-    for (int e = row_start_[i]; e < row_start_[i + 1]; ++e) {
-      const Entry& entry = entries_[e];
-      const double* g = values_.data() + entry.values;
-      const double* block = u.data() + entry.offset;
-      sum += entry.dimension == kFree ? dot(g, block, kFree) : dot(g, block, entry.dimension);
+  for (int g = 0; g < groups(); ++g) {
+    const double* row = values_.data() + groups_[g].values;
+    for (int i = groups_[g].row; i < groups_[g + 1].row; ++i) {
+      double sum = 0.0;
+      for (int e = groups_[g].entry; e < groups_[g + 1].entry; ++e) {
+        const double* body = u.data() + entries_[e].offset;
+        const int d = entries_[e].dimension;
+        sum += d == kThree  ? dot<kThree>(row, body)
+               : d == kFree ? dot<kFree>(row, body)
+                            : dot(row, body, d);
+        row += d;
+      }
+      y[i] = sum;
     }
-    y[i] = sum;
   }
 }
 
-const SparseMatrix& WhitenedRows::body_space_matrix(const Vector& d) {
+/// I plus what add_group(group, out, next pair of entries) adds for every group.
+template <typename AddGroup>
+const SparseMatrix& WhitenedRows::assemble(AddGroup add_group) {
   double* out = lower_.valuePtr();
   std::fill(out, out + lower_.nonZeros(), 0.0);
   for (const int position : diagonal_position_) {
     out[position] = 1.0;
   }
   const int* pair = pair_of_entries_.data();
-  for (Index i = 0; i < rows(); ++i) {
-    for (int e1 = row_start_[i]; e1 < row_start_[i + 1]; ++e1) {
-      for (int e2 = row_start_[i]; e2 < row_start_[i + 1]; ++e2) {
-        const Entry& one = entries_[e1];
-        const Entry& other = entries_[e2];
-        if (one.offset < other.offset) {
-          continue;
-        }
-        const int* starts = column_starts_.data() + first_column_start_[*pair++];
-        if (d[i] == 0.0) {
-          continue;
-        }
-        const double* g1 = values_.data() + one.values;
-        const double* g2 = values_.data() + other.values;
-        for (int c = 0; c < other.dimension; ++c) {
-          const double factor = d[i] * g2[c];
-          double* column = out + starts[c];
-          for (int r = e1 == e2 ? c : 0; r < one.dimension; ++r) {
-            column[r] += factor * g1[r];
+  for (int g = 0; g < groups(); ++g) {
+    const int entries = groups_[g + 1].entry - groups_[g].entry;
+    add_group(g, out, pair);
+    pair += entries * (entries + 1) / 2;
+  }
+  return lower_;
+}
+
+const SparseMatrix& WhitenedRows::body_space_matrix(const Vector& d) {
+  return assemble([this, &d](int g, double* out, const int* first_pair) {
+    const double* row = values_.data() + groups_[g].values;
+    for (int i = groups_[g].row; i < groups_[g + 1].row; ++i, row += groups_[g].width) {
+      if (d[i] == 0.0) {
+        continue;
+      }
+      const int* pair = first_pair;
+      for (int e1 = groups_[g].entry; e1 < groups_[g + 1].entry; ++e1) {
+        for (int e2 = groups_[g].entry; e2 < groups_[g + 1].entry; ++e2) {
+          const Entry& one = entries_[e1];
+          const Entry& other = entries_[e2];
+          if (one.body < other.body) {
+            continue;
+          }
+          const int* starts = column_starts_.data() + first_column_start_[*pair++];
+          const double* g1 = row + one.column;
+          const double* g2 = row + other.column;
+          if (e1 == e2) {
+            add_outer_fast<true>(d[i], g1, one.dimension, g2, other.dimension, out, starts);
+          } else {
+            add_outer_fast<false>(d[i], g1, one.dimension, g2, other.dimension, out, starts);
           }
         }
       }
     }
-  }
-  return lower_;
+  });
+}
+
+const SparseMatrix& WhitenedRows::body_space_matrix(std::span<const double> blocks) {
+  const double* D = blocks.data();
+  return assemble([this, &D](int g, double* out, const int* first_pair) {
+    const int size = group_rows(g);
+    const int width = groups_[g].width;
+    const double* G = values_.data() + groups_[g].values;
+    work_.assign(static_cast<std::size_t>(size) * width, 0.0);  // D G, row by row
+    for (int i = 0; i < size; ++i) {
+      for (int j = 0; j < size; ++j) {
+        add(D[j * size + i], G + j * width, work_.data() + i * width, width);
+      }
+    }
+    const int* pair = first_pair;
+    for (int e1 = groups_[g].entry; e1 < groups_[g + 1].entry; ++e1) {
+      for (int e2 = groups_[g].entry; e2 < groups_[g + 1].entry; ++e2) {
+        const Entry& one = entries_[e1];
+        const Entry& other = entries_[e2];
+        if (one.body < other.body) {
+          continue;
+        }
+        const int* starts = column_starts_.data() + first_column_start_[*pair++];
+        for (int i = 0; i < size; ++i) {
+          const double* g1 = work_.data() + i * width + one.column;
+          const double* g2 = G + i * width + other.column;
+          if (e1 == e2) {
+            add_outer_fast<true>(1.0, g1, one.dimension, g2, other.dimension, out, starts);
+          } else {
+            add_outer_fast<false>(1.0, g1, one.dimension, g2, other.dimension, out, starts);
+          }
+        }
+      }
+    }
+    D += size * size;
+  });
 }
 
 }  // namespace signorini::lcp

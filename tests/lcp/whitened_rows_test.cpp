@@ -4,6 +4,8 @@
 #include <bench/contact_families.h>
 #include <gtest/gtest.h>
 #include <random>
+#include <tuple>
+#include <vector>
 
 namespace signorini::lcp {
 namespace {
@@ -67,6 +69,120 @@ TEST(WhitenedRows, BodySpaceMatrixIsIdentityPlusWeightedSquares) {
   const Matrix H = Matrix(rows.body_space_matrix(d)).selfadjointView<Eigen::Lower>();
   const Matrix expected = Matrix::Identity(G.cols(), G.cols()) + G.transpose() * d.asDiagonal() * G;
   EXPECT_LE((H - expected).cwiseAbs().maxCoeff(), 1e-13 * expected.cwiseAbs().maxCoeff());
+}
+
+/// Three rows a contact: the rows of a family as normals, and two more directions on its bodies.
+FactoredMatrix contacts_of_three_rows(const char* name, int size) {
+  const FactoredMatrix normals = family(name, size);
+  FactoredMatrix A;
+  A.mass = normals.mass;
+  std::mt19937_64 random(9);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < normals.rows(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      A.add_row(k == 2 ? 0.1 : 0.0);
+      for (const FactoredMatrix::Entry& entry : normals.entries(i)) {
+        Vector values = Eigen::Map<const Vector>(normals.values(entry), 6);
+        for (double& value : values) {
+          value += k == 0 ? 0.0 : normal(random);
+        }
+        if (k < 2 || &entry == &normals.entries(i).front()) {  // one row misses a body
+          A.add_entry(entry.block, values);
+        }
+      }
+    }
+  }
+  return A;
+}
+
+TEST(WhitenedRows, BlockOfAGroupIsGTransposeDG) {
+  const FactoredMatrix A = contacts_of_three_rows("spheres", 30);
+  std::vector<int> starts;
+  for (int i = 0; i <= A.rows(); i += 3) {
+    starts.push_back(i);
+  }
+  WhitenedRows rows;
+  rows.set(A, starts);
+  const Matrix G = dense_rows(rows);
+  std::mt19937_64 random(10);
+  std::normal_distribution<double> normal;
+  std::vector<double> blocks;
+  Matrix D = Matrix::Zero(G.rows(), G.rows());
+  for (int i = 0; i < A.rows(); i += 3) {
+    const Matrix root = Matrix::NullaryExpr(3, 3, [&] { return normal(random); });
+    const Matrix block = root * root.transpose();
+    D.block(i, i, 3, 3) = block;
+    blocks.insert(blocks.end(), block.data(), block.data() + 9);
+  }
+  const Matrix H = Matrix(rows.body_space_matrix(std::span<const double>(blocks)))
+                       .selfadjointView<Eigen::Lower>();
+  const Matrix expected = Matrix::Identity(G.cols(), G.cols()) + G.transpose() * D * G;
+  EXPECT_LE((H - expected).cwiseAbs().maxCoeff(), 1e-13 * expected.cwiseAbs().maxCoeff());
+}
+
+TEST(WhitenedRows, RowsOfAGroupShareTheScaleOfTheLongest) {
+  const FactoredMatrix A = contacts_of_three_rows("wall", 2);
+  std::vector<int> starts;
+  for (int i = 0; i <= A.rows(); i += 3) {
+    starts.push_back(i);
+  }
+  WhitenedRows rows;
+  rows.set(A, starts);
+  Vector diagonal;
+  A.diagonal(diagonal);
+  for (int i = 0; i < A.rows(); i += 3) {
+    const double scale = std::sqrt(diagonal.segment(i, 3).maxCoeff());
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(rows.scale()[i + k], scale, 1e-14 * scale);
+    }
+  }
+  const Matrix G = dense_rows(rows);
+  const Matrix S = rows.scale().asDiagonal();
+  const Matrix again = S * (G * G.transpose() + Matrix(rows.compliance().asDiagonal())) * S;
+  const Matrix formed(A.form());
+  EXPECT_LE((again - formed).cwiseAbs().maxCoeff(), 1e-14 * formed.cwiseAbs().maxCoeff());
+}
+
+TEST(WhitenedRows, DirectionsThatNoRowMovesAreLeftOut) {
+  WhitenedRows rows;
+  // Normals through the centres: no rotation. Vertical normals: a height and two tilts.
+  for (const auto& [name, size, each] :
+       {std::tuple("spheres", 100, 3), std::tuple("tower4", 12, 3), std::tuple("wall", 4, 5)}) {
+    const FactoredMatrix A = family(name, size);
+    rows.set(A);
+    EXPECT_LE(rows.degrees_of_freedom(), each * A.mass.block_count()) << name;
+    const Matrix G = dense_rows(rows);
+    const Matrix S = rows.scale().asDiagonal();
+    const Matrix formed(A.form());
+    EXPECT_LE((S * G * G.transpose() * S - formed).cwiseAbs().maxCoeff(),
+              2e-15 * formed.cwiseAbs().maxCoeff())
+        << name;
+  }
+}
+
+TEST(WhitenedRows, BodiesWithoutRowsAndRowsWithoutBodies) {
+  FactoredMatrix A;
+  A.mass.add_inverse(Matrix::Identity(6, 6));
+  A.add_row(2.0);
+  WhitenedRows rows;
+  rows.set(A);
+  EXPECT_EQ(rows.degrees_of_freedom(), 0);
+  EXPECT_DOUBLE_EQ(rows.scale()[0], std::sqrt(2.0));
+  for (const std::string_view name : sparse_cholesky_names()) {
+    const auto cholesky = make_sparse_cholesky(name);
+    const SparseMatrix& none = rows.body_space_matrix(Vector::Ones(1));
+    cholesky->analyse(none);
+    EXPECT_TRUE(cholesky->factor(none)) << name;
+    Vector nothing;
+    cholesky->solve(nothing);
+  }
+}
+
+TEST(WhitenedRows, RefusesGroupsThatAreNotAPartition) {
+  const FactoredMatrix A = family("tower4", 2);
+  WhitenedRows rows;
+  EXPECT_THROW(rows.set(A, std::vector<int>{0, 4}), std::invalid_argument);
+  EXPECT_THROW(rows.set(A, std::vector<int>{0, 4, 4, 8}), std::invalid_argument);
 }
 
 class SparseCholeskyBackEnd : public testing::TestWithParam<std::string_view> {};
