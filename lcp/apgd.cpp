@@ -190,6 +190,9 @@ std::string Apgd::refuses(const Problem& problem) const {
   if (!std::holds_alternative<FactoredMatrix>(problem.M)) {
     return "takes a factored matrix A = J W J^T; this M is given whole";
   }
+  if (!problem.cones.empty()) {
+    return "takes no friction cones";
+  }
   return problem.limits.empty() ? ""
                                 : "takes no coupled limits; row " +
                                       std::to_string(problem.limits.front().row) + " has one";

@@ -1,8 +1,10 @@
 #include <signorini/lcp/certificate.h>
+#include <signorini/lcp/friction_cone.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <vector>
 
 namespace signorini::lcp {
 namespace {
@@ -14,36 +16,6 @@ constexpr double kFloorsAllowed = 4.0;
 // left beside q, the floor is large too, and an infeasible problem would pass for a rounded one.
 constexpr double kRoundingCeiling = 1e-5;
 
-struct Bounds {
-  long double lower;
-  long double upper;
-};
-
-std::vector<Bounds> bounds_at(const Problem& problem, const VectorRef& z) {
-  std::vector<Bounds> bounds(problem.size(), {0.0L, kInfinity});
-  for (Index i = 0; i < problem.size(); ++i) {
-    if (problem.lower.size() > 0) {
-      bounds[i].lower = problem.lower[i];
-    }
-    if (problem.upper.size() > 0) {
-      bounds[i].upper = problem.upper[i];
-    }
-  }
-  for (const CoupledLimit& limit : problem.limits) {
-    const long double most =
-        static_cast<long double>(limit.coefficient) * std::max(z[limit.normal_row], 0.0);
-    bounds[limit.row] = {-most, most};
-  }
-  return bounds;
-}
-
-/// z - clamp(z - w / scale, lower, upper), which is 0 exactly where row (z, w) is solved.
-long double step(long double z, long double w, long double scale, const Bounds& bounds) {
-  const long double moved = z - w / scale;
-  const long double clamped = std::min(std::max(moved, bounds.lower), bounds.upper);
-  return clamped == moved ? w / scale : z - clamped;
-}
-
 Certificate refuse() {
   Certificate certificate;
   certificate.natural_residual = kInfinity;
@@ -54,71 +26,276 @@ Certificate refuse() {
   return certificate;
 }
 
+/// The largest eigenvalue of the symmetric part of a d x d block, or 1 if it is not positive.
+double largest_eigenvalue(const Eigen::Matrix3d& block, int d) {
+  double most = 0.0;
+  if (d == 2) {
+    const double half_difference = 0.5 * (block(0, 0) - block(1, 1));
+    const double off = 0.5 * block(0, 1) + 0.5 * block(1, 0);
+    most = 0.5 * (block(0, 0) + block(1, 1)) + std::hypot(half_difference, off);
+  } else {
+    const Eigen::Matrix3d symmetric = 0.5 * block + 0.5 * block.transpose();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(symmetric, Eigen::EigenvaluesOnly);
+    most = solver.eigenvalues()[2];
+  }
+  return most > 0.0 ? most : 1.0;
+}
+
+/// Fills z's row norms |M||z| (added to size), the diagonal and the blocks of the cones.
+struct EntryVisitor {
+  const std::vector<long double>& z;
+  const std::vector<int>& cone_of_row;
+  const std::vector<FrictionCone>& cones;
+  std::vector<long double>& size;
+  Vector& diagonal;
+  std::vector<Eigen::Matrix3d>& blocks;
+
+  void operator()(Index i, Index j, double a) const {
+    size[i] += std::abs(a) * std::abs(z[j]);
+    if (i == j) {
+      diagonal[i] = a;
+    }
+    if (!cones.empty() && cone_of_row[i] >= 0 && cone_of_row[i] == cone_of_row[j]) {
+      const int cone = cone_of_row[i];
+      blocks[cone](i - cones[cone].normal_row, j - cones[cone].normal_row) = a;
+    }
+  }
+};
+
 }  // namespace
 
-Certificate certify(const Problem& problem, const VectorRef& z, Vector* w) {
+/// w_, size_, scale_ from M and q.
+void Certifier::multiply_by_matrix(const Problem& problem) {
   const Index n = problem.size();
-  if (w != nullptr) {
-    w->setConstant(n, Certificate::kNaN);
+  cone_of_row_.assign(problem.cones.empty() ? 0 : n, -1);
+  cone_blocks_.assign(problem.cones.size(), Eigen::Matrix3d::Zero());
+  for (std::size_t c = 0; c < problem.cones.size(); ++c) {
+    for (int k = 0; k < problem.cones[c].dimension; ++k) {
+      cone_of_row_[problem.cones[c].normal_row + k] = static_cast<int>(c);
+    }
   }
+  size_.assign(n, 0.0L);
+  scale_.setZero(n);
+  w_.assign(n, 0.0L);
+  const EntryVisitor visit{z_, cone_of_row_, problem.cones, size_, scale_, cone_blocks_};
+  if (const auto* factored = std::get_if<FactoredMatrix>(&problem.M)) {
+    body_p_.resize(factored->degrees_of_freedom());
+    body_v_.resize(factored->degrees_of_freedom());
+    factored->transpose_times(z_.data(), body_p_.data());
+    factored->apply_inverse_mass(body_p_.data(), body_v_.data());
+    factored->times(body_v_.data(), z_.data(), w_.data());
+    factored->visit_lower(visit_, [&visit](Index i, Index j, double a) {
+      visit(i, j, a);
+      if (i != j) {
+        visit(j, i, a);
+      }
+    });
+  } else {
+    multiply(problem.M, z_.data(), w_.data());
+    if (const auto* dense = std::get_if<Matrix>(&problem.M)) {
+      for (Index j = 0; j < n; ++j) {
+        for (Index i = 0; i < n; ++i) {
+          visit(i, j, (*dense)(i, j));
+        }
+      }
+    } else {
+      const auto& sparse = std::get<SparseMatrix>(problem.M);
+      for (Index j = 0; j < n; ++j) {
+        for (SparseMatrix::InnerIterator it(sparse, j); it; ++it) {
+          visit(it.row(), j, it.value());
+        }
+      }
+    }
+  }
+  for (Index i = 0; i < n; ++i) {
+    w_[i] += problem.q[i];
+    size_[i] += std::abs(problem.q[i]);
+    scale_[i] = scale_[i] > 0.0 ? scale_[i] : 1.0;
+  }
+  for (std::size_t c = 0; c < problem.cones.size(); ++c) {
+    scale_[problem.cones[c].normal_row] =
+        largest_eigenvalue(cone_blocks_[c], problem.cones[c].dimension);
+  }
+}
+
+void Certifier::find_bounds(const Problem& problem) {
+  bounds_.assign(problem.size(), {0.0L, kInfinity});
+  for (Index i = 0; i < problem.size(); ++i) {
+    if (problem.lower.size() > 0) {
+      bounds_[i].lower = problem.lower[i];
+    }
+    if (problem.upper.size() > 0) {
+      bounds_[i].upper = problem.upper[i];
+    }
+  }
+  for (const CoupledLimit& limit : problem.limits) {
+    const long double most =
+        static_cast<long double>(limit.coefficient) * std::max(z_[limit.normal_row], 0.0L);
+    bounds_[limit.row] = {-most, most};
+  }
+}
+
+Certifier::Measure Certifier::measure_row(Index i) const {
+  const long double z = z_[i];
+  const long double w = w_[i];
+  const auto [lower, upper] = bounds_[i];
+  const auto step = [&](long double scale) {  // 0 exactly where the row is solved
+    const long double moved = z - w / scale;
+    const long double clamped = std::min(std::max(moved, lower), upper);
+    return std::abs(clamped == moved ? w / scale : z - clamped);
+  };
+  const long double d = scale_[i];
+  Measure row;
+  row.natural = step(1.0L);
+  row.unit_free = d * step(d);
+  row.backward = row.unit_free > 0.0L ? row.unit_free / (d * std::abs(z) + size_[i]) : 0.0L;
+  if (lower == 0.0L && upper == kInfinity) {
+    row.z_dot_w = z * w;
+    row.min_z = static_cast<double>(z);
+    row.min_w = static_cast<double>(w);
+  }
+  return row;
+}
+
+Certifier::Measure Certifier::measure_cone(const Problem& problem, std::size_t cone) const {
+  const auto [first, d, coefficient] = problem.cones[cone];
+  const long double mu = coefficient;
+  const long double* z = z_.data() + first;
+  std::array<long double, 3> w{};
+  std::copy(w_.data() + first, w_.data() + first + d, w.data());
+  Measure sum;
+  sum.min_w = static_cast<double>(w[0]);
+  if (problem.friction_law == FrictionLaw::kCoulomb) {
+    w[0] += mu * tangential_norm(d, w.data());
+  }
+  const auto norm = [d](const std::array<long double, 3>& v) {
+    return std::hypot(v[0], tangential_norm(d, v.data()));
+  };
+  const auto step = [&](long double scale) {  // 0 exactly where the contact is solved
+    std::array<long double, 3> moved{};
+    std::array<long double, 3> nearest{};
+    for (int k = 0; k < d; ++k) {
+      moved[k] = z[k] - w[k] / scale;
+    }
+    if (tangential_norm(d, moved.data()) <= mu * moved[0]) {
+      return norm(w) / scale;
+    }
+    project_on_cone(mu, d, moved.data(), nearest.data());
+    for (int k = 0; k < d; ++k) {
+      moved[k] = z[k] - nearest[k];
+    }
+    return norm(moved);
+  };
+  const long double scale = scale_[first];
+  sum.natural = step(1.0L);
+  sum.unit_free = scale * step(scale);
+  long double size = 0.0L;
+  long double z_size = 0.0L;
+  for (int k = 0; k < d; ++k) {
+    size = std::max(size, size_[first + k]);
+    z_size = std::max(z_size, std::abs(z[k]));
+    sum.z_dot_w += z[k] * w[k];
+  }
+  sum.backward = sum.unit_free > 0.0L ? sum.unit_free / (scale * z_size + size) : 0.0L;
+  sum.min_z = static_cast<double>(z[0]);
+  sum.cone_violation = static_cast<double>(cone_violation(mu, d, z));
+  return sum;
+}
+
+bool Certifier::measure(const Problem& problem, const VectorRef& z) {
+  const Index n = problem.size();
   if (z.size() != n || !z.allFinite()) {
+    return false;
+  }
+  z_.assign(z.data(), z.data() + n);
+  multiply_by_matrix(problem);
+  find_bounds(problem);
+  measures_.assign(n, Measure{});
+  for (Index i = 0; i < n; ++i) {
+    const int cone = problem.cones.empty() ? -1 : cone_of_row_[i];
+    if (cone < 0) {
+      measures_[i] = measure_row(i);
+    } else if (problem.cones[cone].normal_row == i) {
+      measures_[i] = measure_cone(problem, cone);
+    }
+    if (!std::isfinite(measures_[i].natural) || !std::isfinite(measures_[i].unit_free) ||
+        !std::isfinite(size_[i])) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void Certifier::Total::add(int row, const Measure& measure, long double row_size, double q) {
+  most.natural = std::max(most.natural, measure.natural);
+  if (measure.unit_free > most.unit_free || worst_row < 0) {
+    most.unit_free = measure.unit_free;
+    worst_row = row;
+  }
+  most.backward = std::max(most.backward, measure.backward);
+  most.z_dot_w += measure.z_dot_w;
+  most.min_z = std::fmin(most.min_z, measure.min_z);
+  most.min_w = std::fmin(most.min_w, measure.min_w);
+  most.cone_violation = std::fmax(most.cone_violation, measure.cone_violation);
+  size = std::max(size, row_size);
+  q_inf = std::max(q_inf, std::abs(q));
+}
+
+Certificate Certifier::Total::certificate() const {
+  Certificate result;
+  result.natural_residual = static_cast<double>(most.natural / (1.0L + q_inf));
+  result.natural_floor = static_cast<double>(kEpsilon * size / (1.0L + q_inf));
+  if (q_inf > 0.0) {
+    result.unit_free_residual = static_cast<double>(most.unit_free / q_inf);
+    result.rounding_floor = static_cast<double>(kEpsilon * size / q_inf);
+  } else {
+    result.unit_free_residual = most.unit_free == 0.0L ? 0.0 : kInfinity;
+    result.rounding_floor = 0.0;
+  }
+  result.backward_error = static_cast<double>(most.backward);
+  result.min_z = most.min_z;
+  result.min_w = most.min_w;
+  result.complementarity = static_cast<double>(std::abs(most.z_dot_w));
+  result.cone_violation = most.cone_violation;
+  result.worst_row = worst_row;
+  return result;
+}
+
+Certificate Certifier::certify(const Problem& problem, const VectorRef& z, Vector* w) {
+  const Index n = problem.size();
+  if (!measure(problem, z)) {
+    if (w != nullptr) {
+      w->setConstant(n, Certificate::kNaN);
+    }
     return refuse();
   }
-  const std::vector<long double> wide_z(z.data(), z.data() + n);
-  std::vector<long double> wide_w(n);
-  multiply(problem.M, wide_z.data(), wide_w.data());
-  std::vector<long double> magnitude;
-  absolute_multiply(problem.M, z, magnitude);
-  Vector scale;
-  diagonal(problem.M, scale);
-  const std::vector<Bounds> bounds = bounds_at(problem, z);
-
-  const double q_inf = n > 0 ? problem.q.cwiseAbs().maxCoeff() : 0.0;
-  long double natural = 0.0L;
-  long double unit_free = 0.0L;
-  long double backward = 0.0L;
-  long double z_dot_w = 0.0L;
-  long double most = 0.0L;
-  Certificate certificate;
+  Total total;
   for (Index i = 0; i < n; ++i) {
-    wide_w[i] += problem.q[i];
-    if (w != nullptr) {
-      (*w)[i] = static_cast<double>(wide_w[i]);
-    }
-    const double d = scale[i] > 0.0 ? scale[i] : 1.0;
-    const long double scaled = d * std::abs(step(wide_z[i], wide_w[i], d, bounds[i]));
-    const long double plain = std::abs(step(wide_z[i], wide_w[i], 1.0L, bounds[i]));
-    if (!std::isfinite(scaled) || !std::isfinite(plain) || !std::isfinite(magnitude[i])) {
-      return refuse();
-    }
-    natural = std::max(natural, plain);
-    if (scaled > unit_free || certificate.worst_row < 0) {
-      unit_free = scaled;
-      certificate.worst_row = static_cast<int>(i);
-    }
-    const long double size = magnitude[i] + std::abs(problem.q[i]);
-    most = std::max(most, size);
-    if (scaled > 0.0L) {
-      backward = std::max(backward, scaled / (d * std::abs(wide_z[i]) + size));
-    }
-    if (bounds[i].lower == 0.0L && bounds[i].upper == kInfinity) {
-      z_dot_w += wide_z[i] * wide_w[i];
-      certificate.min_z = std::fmin(certificate.min_z, z[i]);
-      certificate.min_w = std::fmin(certificate.min_w, static_cast<double>(wide_w[i]));
-    }
+    total.add(static_cast<int>(i), measures_[i], size_[i], problem.q[i]);
   }
-  certificate.natural_residual = static_cast<double>(natural / (1.0L + q_inf));
-  certificate.natural_floor = static_cast<double>(kEpsilon * most / (1.0L + q_inf));
-  if (q_inf > 0.0) {
-    certificate.unit_free_residual = static_cast<double>(unit_free / q_inf);
-    certificate.rounding_floor = static_cast<double>(kEpsilon * most / q_inf);
-  } else {
-    certificate.unit_free_residual = unit_free == 0.0L ? 0.0 : kInfinity;
-    certificate.rounding_floor = 0.0;
+  if (w != nullptr) {
+    w->resize(n);
+    std::copy(w_.begin(), w_.end(), w->data());
   }
-  certificate.backward_error = static_cast<double>(backward);
-  certificate.complementarity = static_cast<double>(std::abs(z_dot_w));
-  return certificate;
+  return total.certificate();
+}
+
+void Certifier::certify_islands(const Problem& problem, const VectorRef& z, const Islands& islands,
+                                std::vector<Certificate>& certificates) {
+  if (!measure(problem, z)) {
+    certificates.assign(islands.count, refuse());
+    return;
+  }
+  totals_.assign(islands.count, Total{});
+  for (Index i = 0; i < problem.size(); ++i) {
+    totals_[islands.island[i]].add(static_cast<int>(i), measures_[i], size_[i], problem.q[i]);
+  }
+  certificates.resize(islands.count);
+  std::ranges::transform(totals_, certificates.begin(), &Total::certificate);
+}
+
+Certificate certify(const Problem& problem, const VectorRef& z, Vector* w) {
+  return Certifier().certify(problem, z, w);
 }
 
 Status judge(const Certificate& certificate, double tolerance, Status otherwise) {

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <signorini/lcp/islands.h>
 #include <signorini/lcp/problem.h>
 #include <signorini/lcp/status.h>
 
 #include <limits>
+#include <vector>
 
 namespace signorini::lcp {
 
@@ -12,7 +14,13 @@ namespace signorini::lcp {
 ///
 ///     r_i(s) = z_i - clamp(z_i - w_i / s, lower_i, upper_i)     ( = min(z_i, w_i / s) for an LCP),
 ///
-/// coupled rows with the bounds -+ mu z_n of the given z (z_n < 0 counts as 0). Starts as NaN.
+/// coupled rows with the bounds -+ mu z_n of the given z (z_n < 0 counts as 0). The rows c of a
+/// friction cone K are measured together, in the Euclidean norm: with w~ = w + mu |w_T| n
+/// (Coulomb; associated: w~ = w) and D_c the largest eigenvalue of the symmetric part of M_cc,
+///
+///     r_c(s) = z_c - P_K(z_c - w~_c / s).
+///
+/// Starts as NaN.
 struct Certificate {
   static constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -22,7 +30,7 @@ struct Certificate {
   /// max_i D_i |r_i(D_i)| / |q|_inf, for an LCP max|min(M_ii z_i, w_i)| / |q|. Unit-free: other
   /// units of z and of w (one factor each) change nothing; rows are measured against the largest q,
   /// so a row whose q is far below it counts for little. With q = 0: 0 if the numerator is 0,
-  /// +infinity otherwise.
+  /// +infinity otherwise. A cone counts as one row, D_c |r_c(D_c)|.
   double unit_free_residual = kNaN;
   /// eps max_i (|M||z| + |q|)_i / |q|_inf: what rounding z and w to double costs the unit-free
   /// residual. No solver that returns doubles can be asked for much less.
@@ -33,13 +41,75 @@ struct Certificate {
   /// max_i |D_i r_i(D_i)| / (D_i |z_i| + (|M||z|)_i + |q_i|): small when z is exact for slightly
   /// other data.
   double backward_error = kNaN;
-  double min_z = kNaN;  ///< min_i z_i over the rows with lower = 0 (else NaN), caller's units
-  double min_w = kNaN;  ///< min_i w_i over the rows with upper = inf and lower = 0
-  double complementarity = kNaN;  ///< |z.w| over the rows that are neither free nor boxed
-  int worst_row = -1;             ///< the row of the unit-free residual, -1 if n = 0
+  /// min_i z_i over the rows with lower = 0 and the normal rows of cones (else NaN), caller's
+  /// units.
+  double min_z = kNaN;
+  double min_w =
+      kNaN;  ///< min_i w_i over the rows with upper = inf and lower = 0, and cones' normals
+  /// |z.w~| over the rows that are neither free nor boxed; w~ = w but in Coulomb's cones.
+  double complementarity = kNaN;
+  /// max over the cones of max(|z_T| - mu z_N, -z_N, 0), caller's units; NaN without cones.
+  double cone_violation = kNaN;
+  int worst_row = -1;  ///< the row (of a cone: the normal) of the unit-free residual, -1 if n = 0
 };
 
-/// Recomputes the certificate of z. Cost: one product with M in long double, one with |M|.
+/// Computes certificates, and keeps its memory: nothing is allocated once capacity was reached.
+class Certifier {
+ public:
+  /// See certify(), which is this with new memory.
+  [[nodiscard]] Certificate certify(const Problem& problem, const VectorRef& z,
+                                    Vector* w = nullptr);
+  /// One certificate an island, each with its own |q|_inf and floors, as if it were the whole
+  /// problem. Where one island is refused (not finite), all are.
+  /// @param islands of this problem @param certificates receives islands.count
+  void certify_islands(const Problem& problem, const VectorRef& z, const Islands& islands,
+                       std::vector<Certificate>& certificates);
+
+ private:
+  struct Bounds {
+    long double lower;
+    long double upper;
+  };
+  /// What a row, or the normal row of a cone for all its rows, adds to a certificate.
+  struct Measure {
+    long double natural = 0.0L;    // |r(1)|
+    long double unit_free = 0.0L;  // D |r(D)|
+    long double backward = 0.0L;
+    long double z_dot_w = 0.0L;
+    double min_z = Certificate::kNaN;
+    double min_w = Certificate::kNaN;
+    double cone_violation = Certificate::kNaN;
+  };
+  /// Everything that a certificate is made of.
+  struct Total {
+    Measure most;  // of the rows; z_dot_w: the sum
+    long double size = 0.0L;
+    double q_inf = 0.0;
+    int worst_row = -1;
+    void add(int row, const Measure& measure, long double row_size, double q);
+    [[nodiscard]] Certificate certificate() const;
+  };
+  /// Fills everything below for z. @return false if a number is not finite.
+  [[nodiscard]] bool measure(const Problem& problem, const VectorRef& z);
+  void multiply_by_matrix(const Problem& problem);
+  void find_bounds(const Problem& problem);
+  [[nodiscard]] Measure measure_row(Index i) const;
+  [[nodiscard]] Measure measure_cone(const Problem& problem, std::size_t cone) const;
+
+  std::vector<long double> z_, w_;            // w = M z + q
+  std::vector<long double> body_p_, body_v_;  // of a factored M
+  std::vector<long double> size_;             // (|M||z|)_i + |q_i|
+  Vector scale_;                              // D of every row; of a cone at its normal row
+  std::vector<Eigen::Matrix3d> cone_blocks_;  // M_cc
+  std::vector<int> cone_of_row_;              // -1: none
+  std::vector<Bounds> bounds_;
+  std::vector<Measure> measures_;
+  FactoredMatrix::VisitWorkspace visit_;
+  std::vector<Total> totals_;  // of the islands
+};
+
+/// Recomputes the certificate of z. Cost: one product with M in long double, one with |M| (of a
+/// factored M without forming it, FactoredMatrix::visit_lower()).
 /// @param problem must have passed check_shapes(), with finite values; numbers from 1e-150 to 1e150
 /// neither overflow nor underflow on the way (long double has the range), residuals beyond double
 /// are +infinity

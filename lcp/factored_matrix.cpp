@@ -109,6 +109,31 @@ void FactoredMatrix::diagonal(Vector& d) const {
   }
 }
 
+void FactoredMatrix::start_visit(VisitWorkspace& workspace) const {
+  auto& [use_start, uses, moved, product, seen, touched] = workspace;
+  use_start.assign(mass.block_count() + 1, 0);
+  for (const Entry& entry : entries_) {
+    ++use_start[entry.block + 1];
+  }
+  int widest = 0;
+  for (int b = 0; b < mass.block_count(); ++b) {
+    use_start[b + 1] += use_start[b];
+    widest = std::max(widest, mass.dimension(b));
+  }
+  uses.resize(entries_.size());
+  for (int i = rows() - 1; i >= 0; --i) {  // from the end, so that use_start ends at the starts
+    for (const Entry& entry : entries(i)) {
+      uses[--use_start[entry.block + 1]] = {i, entry.values};
+    }
+  }
+  use_start.erase(use_start.begin());
+  use_start.push_back(static_cast<int>(entries_.size()));
+  moved.resize(widest);
+  product.resize(rows());
+  seen.assign(rows(), -1);
+  touched.reserve(rows());
+}
+
 SparseMatrix FactoredMatrix::form() const {
   struct Use {
     int row;

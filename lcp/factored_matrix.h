@@ -4,6 +4,7 @@
 #include <signorini/lcp/types.h>
 
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace signorini::lcp {
@@ -64,15 +65,66 @@ class FactoredMatrix {
   /// A_ii for every row.
   void diagonal(Vector& d) const;
 
+  /// Memory of visit_lower(); grows to the largest matrix it has seen.
+  struct VisitWorkspace {
+    std::vector<int> use_start;             // of a block, into uses
+    std::vector<std::pair<int, int>> uses;  // (row, where its values start), rows ascending
+    std::vector<double> moved;              // W_b J_ib^T
+    std::vector<double> product;            // A_ij by j
+    std::vector<int> seen;                  // the last i with A_ij in product, by j
+    std::vector<int> touched;               // the j that are in product
+  };
+  /// Calls visit(i, j, A_ij) for the entries of A's lower triangle (j <= i), row by row, j in no
+  /// order, the diagonal always; entries that cancel to zero are visited. Nothing is formed. Cost:
+  /// half the sum over the blocks of (rows on the block)^2.
+  template <typename Visit>
+  void visit_lower(VisitWorkspace& workspace, Visit visit) const;
+
   /// A, formed: symmetric, both triangles stored. Cost: the sum over the blocks of (rows on the
   /// block)^2. Entries that cancel to zero are kept.
   [[nodiscard]] SparseMatrix form() const;
 
  private:
+  void start_visit(VisitWorkspace& workspace) const;
+
   std::vector<int> row_start_{0};
   std::vector<Entry> entries_;
   std::vector<double> values_;
   std::vector<double> compliance_;
 };
+
+template <typename Visit>
+void FactoredMatrix::visit_lower(VisitWorkspace& workspace, Visit visit) const {
+  start_visit(workspace);
+  auto& [use_start, uses, moved, product, seen, touched] = workspace;
+  for (int i = 0; i < rows(); ++i) {
+    touched.assign(1, i);
+    seen[i] = i;
+    product[i] = compliance_[i];
+    for (const Entry& entry : entries(i)) {
+      const int size = mass.dimension(entry.block);
+      mass.apply_inverse(entry.block, values(entry), moved.data());
+      for (int use = use_start[entry.block]; uses[use].first <= i; ++use) {
+        const auto [j, start] = uses[use];
+        double a = 0.0;
+        for (int k = 0; k < size; ++k) {
+          a += moved[k] * values_[start + k];
+        }
+        if (seen[j] != i) {
+          seen[j] = i;
+          product[j] = 0.0;
+          touched.push_back(j);
+        }
+        product[j] += a;
+        if (j == i) {
+          break;
+        }
+      }
+    }
+    for (const int j : touched) {
+      visit(i, j, product[j]);
+    }
+  }
+}
 
 }  // namespace signorini::lcp

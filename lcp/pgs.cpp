@@ -463,8 +463,8 @@ Pgs::Pgs(const PgsSettings& settings)
 
 Pgs::~Pgs() = default;
 
-std::string Pgs::refuses(const Problem&) const {
-  return {};
+std::string Pgs::refuses(const Problem& problem) const {
+  return problem.cones.empty() ? "" : "takes no friction cones";
 }
 
 Status Pgs::iterate(const Problem& problem, const Vector* warm_start, const Deadline& deadline,

@@ -74,13 +74,47 @@ std::string bad_bound(const Problem& problem) {
       return indexed("limit coefficient of row", limit.row, limit.coefficient);
     }
   }
+  for (const FrictionCone& cone : problem.cones) {
+    if (!(cone.coefficient >= 0.0) || !std::isfinite(cone.coefficient)) {
+      return indexed("friction coefficient of the cone at row", cone.normal_row, cone.coefficient);
+    }
+  }
   return {};
+}
+
+/// Cones lie within the problem and share no row with one another or with a coupled limit.
+void check_cones(const Problem& problem) {
+  std::vector<bool> used(problem.size(), false);
+  for (const CoupledLimit& limit : problem.limits) {
+    used[limit.row] = used[limit.normal_row] = true;
+  }
+  for (const FrictionCone& cone : problem.cones) {
+    const std::string which = "cones: at row " + std::to_string(cone.normal_row);
+    if (cone.dimension != 2 && cone.dimension != 3) {
+      fail(which + ": dimension must be 2 or 3, got " + std::to_string(cone.dimension));
+    }
+    if (cone.normal_row < 0 || cone.normal_row + Index{cone.dimension} > problem.size()) {
+      fail(which + ": " + std::to_string(cone.dimension) + " rows do not fit a problem of " +
+           std::to_string(problem.size()) + " rows");
+    }
+    for (int k = 0; k < cone.dimension; ++k) {
+      if (used[cone.normal_row + k]) {
+        fail(which + ": row " + std::to_string(cone.normal_row + k) +
+             " belongs to another cone or coupled limit");
+      }
+      used[cone.normal_row + k] = true;
+    }
+  }
 }
 
 }  // namespace
 
+std::string_view to_string(FrictionLaw law) {
+  return law == FrictionLaw::kCoulomb ? "Coulomb" : "associated";
+}
+
 bool Problem::is_lcp() const {
-  return limits.empty() && (lower.size() == 0 || (lower.array() == 0.0).all()) &&
+  return limits.empty() && cones.empty() && (lower.size() == 0 || (lower.array() == 0.0).all()) &&
          (upper.size() == 0 || (upper.array() == kInfinity).all());
 }
 
@@ -114,6 +148,9 @@ void check_shapes(const Problem& problem) {
       fail("limits: row " + std::to_string(limit.row) + " with normal row " +
            std::to_string(limit.normal_row) + " in a problem of " + std::to_string(n) + " rows");
     }
+  }
+  if (!problem.cones.empty()) {
+    check_cones(problem);
   }
 }
 
@@ -153,27 +190,6 @@ void multiply(const MatrixForm& M, const Scalar* z, Scalar* w) {
   for (Index j = 0; j < sparse.outerSize(); ++j) {
     for (SparseMatrix::InnerIterator it(sparse, j); it; ++it) {
       w[it.row()] += it.value() * z[j];
-    }
-  }
-}
-
-void absolute_multiply(const MatrixForm& M, const VectorRef& z, std::vector<long double>& out) {
-  out.assign(rows(M), 0.0L);
-  if (const auto* dense = std::get_if<Matrix>(&M)) {
-    for (Index j = 0; j < dense->cols(); ++j) {
-      const long double size = std::abs(z[j]);
-      for (Index i = 0; i < dense->rows() && size > 0.0L; ++i) {
-        out[i] += std::abs((*dense)(i, j)) * size;
-      }
-    }
-    return;
-  }
-  const auto* factored = std::get_if<FactoredMatrix>(&M);
-  const SparseMatrix formed = factored ? factored->form() : SparseMatrix();
-  const SparseMatrix& sparse = factored ? formed : std::get<SparseMatrix>(M);
-  for (Index j = 0; j < sparse.outerSize(); ++j) {
-    for (SparseMatrix::InnerIterator it(sparse, j); it; ++it) {
-      out[it.row()] += std::abs(it.value()) * static_cast<long double>(std::abs(z[j]));
     }
   }
 }

@@ -5,6 +5,8 @@
 #include <signorini/lcp/types.h>
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace signorini::lcp {
 
@@ -15,6 +17,17 @@ struct Statistics {
   int factorizations = -1;    ///< of any matrix, from scratch
   int refinements = -1;       ///< iterative refinement steps
   double solve_seconds = -1;  ///< wall time of solve(), certificate included
+};
+
+/// One solver's part in a solve that tried several.
+struct Attempt {
+  std::string_view solver;  ///< the name make_solver() knows
+  std::string_view reason;  ///< why it was tried, one clause
+  Status status = Status::kNotRun;
+  double natural_residual = Certificate::kNaN;    ///< of its iterate, see Certificate
+  double unit_free_residual = Certificate::kNaN;  ///< of its iterate, see Certificate
+  Statistics statistics;
+  std::string detail;  ///< Result::detail of the attempt
 };
 
 /// What a solve returns. Every member is written on every call.
@@ -29,6 +42,7 @@ struct Result {
   Vector ray;               ///< y of RayVerdict if the solve ended on a ray, else empty
   double ray_bound = 0.0;   ///< Z: every feasible z has |z|_1 >= Z. 0: nothing is known
   Statistics statistics;
+  std::vector<Attempt> attempts;  ///< of a solver that tries others, in order; else empty
 };
 
 }  // namespace signorini::lcp

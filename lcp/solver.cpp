@@ -33,11 +33,9 @@ bool Deadline::passed() const {
   return elapsed_seconds() > seconds_;
 }
 
-namespace {
-
-void finish(const Problem& problem, double tolerance, Status ending, Result& result) {
-  result.certificate = certify(problem, result.z, &result.w);
-  result.status = judge(result.certificate, tolerance, ending);
+void Solver::finish(const Problem& problem, Status ending, Result& result) {
+  result.certificate = certifier_.certify(problem, result.z, &result.w);
+  result.status = judge(result.certificate, settings().tolerance, ending);
   if (is_solved(result.status)) {
     result.ray.resize(0);
     return;
@@ -48,8 +46,6 @@ void finish(const Problem& problem, double tolerance, Status ending, Result& res
     result.ray_bound = verdict.bound;
   }
 }
-
-}  // namespace
 
 void Solver::solve(const Problem& problem, Result& result, const Vector* warm_start) {
   check_shapes(problem);
@@ -71,6 +67,7 @@ void Solver::solve(const Problem& problem, Result& result, const Vector* warm_st
   result.ray.resize(0);
   result.ray_bound = 0.0;
   result.statistics = {};
+  result.attempts.clear();
   if (std::string bad = find_bad_value(problem); !bad.empty()) {
     result.status = Status::kInvalidInput;
     result.detail = std::move(bad);
@@ -79,8 +76,7 @@ void Solver::solve(const Problem& problem, Result& result, const Vector* warm_st
     const Status ending =
         n == 0 ? Status::kSolved
                : iterate(problem, start_is_finite ? warm_start : nullptr, deadline, result);
-    finish(problem, settings().tolerance, is_solved(ending) ? Status::kNumericalBreakdown : ending,
-           result);
+    finish(problem, is_solved(ending) ? Status::kNumericalBreakdown : ending, result);
     if (!start_is_finite) {
       result.detail += result.detail.empty() ? "" : "; ";
       result.detail += "warm start not finite, not used";

@@ -66,6 +66,10 @@ class Solver {
   /// together with result.ray. Called with n >= 1 and finite data.
   virtual Status iterate(const Problem& problem, const Vector* warm_start, const Deadline& deadline,
                          Result& result) = 0;
+
+ private:
+  void finish(const Problem& problem, Status ending, Result& result);
+  Certifier certifier_;
 };
 
 /// Names that make_solver() knows, in the order to show them.

@@ -1,5 +1,7 @@
 #include <signorini/lcp/certificate.h>
 
+#include "allocation_count.h"
+
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
@@ -103,6 +105,149 @@ TEST(Certificate, CouplesAFrictionRowToTheNormalOfTheGivenZ) {
   EXPECT_DOUBLE_EQ(certify(problem, vector({2, 2})).unit_free_residual, 0.2);
   // A negative normal force carries no friction: both rows are wrong, z_n by 1 + 2.
   EXPECT_DOUBLE_EQ(certify(problem, vector({-1, 0})).unit_free_residual, 0.6);
+}
+
+Problem one_contact(double mu, FrictionLaw law) {
+  Problem problem = lcp(2.0 * Matrix::Identity(3, 3), vector({-4, 3, 4}));
+  problem.cones = {{.normal_row = 0, .dimension = 3, .coefficient = mu}};
+  problem.friction_law = law;
+  return problem;
+}
+
+// Slides: z_N = 2, |z_T| = 1 against w_T = (3, 4) - 2 (.6, .8).
+TEST(Certificate, OfACoulombContactThatSlidesIsZeroOnlyAgainstItsVelocity) {
+  const Problem problem = one_contact(0.5, FrictionLaw::kCoulomb);
+  const Certificate c = certify(problem, vector({2, -0.6, -0.8}));
+  EXPECT_LE(c.unit_free_residual, kEpsilon);
+  EXPECT_LE(c.natural_residual, kEpsilon);
+  EXPECT_EQ(c.min_z, 2.0);
+  EXPECT_EQ(c.min_w, 0.0);
+  EXPECT_LE(c.complementarity, 4 * kEpsilon);
+  EXPECT_LE(c.cone_violation, kEpsilon);
+  EXPECT_EQ(c.worst_row, 0);
+  // along the velocity: moved_T = (.6, .8) - (3 + 1.2, 4 + 1.6) / 2 points the other way
+  EXPECT_GT(certify(problem, vector({2, 0.6, 0.8})).unit_free_residual, 0.5);
+  EXPECT_GT(certify(problem, vector({2, 0, 0})).unit_free_residual, 0.1);
+}
+
+TEST(Certificate, OfAContactThatSticksIsZeroInsideItsCone) {
+  const Problem problem = one_contact(2.0, FrictionLaw::kCoulomb);
+  EXPECT_EQ(certify(problem, vector({2, -1.5, -2})).unit_free_residual, 0.0);
+  // w = (0, 1, 0), w~ = (2, 1, 0), z - w~ / 2 = (1, -1.5, -2), P of it (1.2, -1.44, -1.92)
+  EXPECT_DOUBLE_EQ(certify(problem, vector({2, -1, -2})).unit_free_residual,
+                   2.0 * std::sqrt(0.8 * 0.8 + 0.44 * 0.44 + 0.08 * 0.08) / 4.0);
+}
+
+// The convex model lifts a sliding contact: w_N = mu |w_T|, which Coulomb's law refuses.
+TEST(Certificate, OfTheAssociatedLawLiftsASlidingContact) {
+  // w = (-4 + 2 a, 5 - a): w_N = (5 - a) / 2 at a = 13 / 5
+  const double a = 2.6;
+  const Vector z = vector({a, -0.5 * a * 0.6, -0.5 * a * 0.8});
+  EXPECT_LE(certify(one_contact(0.5, FrictionLaw::kAssociated), z).unit_free_residual, kEpsilon);
+  EXPECT_GT(certify(one_contact(0.5, FrictionLaw::kCoulomb), z).unit_free_residual, 0.1);
+  EXPECT_GT(certify(one_contact(0.5, FrictionLaw::kAssociated), vector({2, -0.6, -0.8}))
+                .unit_free_residual,
+            0.1);
+}
+
+// 2 x 2: M_cc = [[3, 1], [1, 3]] has the largest eigenvalue 4; at z = 0, w = q.
+TEST(Certificate, MeasuresAConeByTheLargestEigenvalueOfItsBlock) {
+  Problem problem = lcp(Matrix{{3, 1}, {1, 3}}, vector({-8, 0}));
+  problem.cones = {{.normal_row = 0, .dimension = 2, .coefficient = 0.5}};
+  EXPECT_DOUBLE_EQ(certify(problem, vector({0, 0})).unit_free_residual, 1.0);
+  EXPECT_DOUBLE_EQ(certify(problem, vector({0, 0})).natural_residual, 8.0 / 9.0);
+  // outside the cone by |z_T| = 1: w = (-7, 3), 4 |(0, 1) - P((0, 1) - (-7 + 1.5, 3) / 4)|
+  const double x0 = 5.5 / 4.0;
+  const double x1 = 1.0 - 0.75;
+  ASSERT_LT(x1, 0.5 * x0);
+  EXPECT_DOUBLE_EQ(certify(problem, vector({0, 1})).unit_free_residual,
+                   4.0 * std::hypot(x0, 1.0 - x1) / 8.0);
+}
+
+TEST(Certificate, OfConesIsTheSameForEveryFormOfM) {
+  FactoredMatrix A;
+  A.mass.add_inverse(Matrix{{2, 0.5}, {0.5, 1}});
+  A.mass.add_inverse(Matrix::Identity(1, 1));
+  for (const auto& [a, b, c] :
+       {std::tuple{1.0, 2.0, 0.5}, {0.0, 1.0, -1.0}, {1.0, 0.0, 2.0}, {-1.0, 1.0, 1.0}}) {
+    A.add_row(0.25);
+    A.add_entry(0, vector({a, b}));
+    A.add_entry(1, vector({c}));
+  }
+  Problem problem;
+  problem.M = A;
+  problem.q = vector({-1, 2, -3, 0.5});
+  problem.cones = {{.normal_row = 1, .dimension = 3, .coefficient = 0.7}};
+  const Vector z = vector({0.3, 1.0, -0.2, 0.4});
+  const Certificate factored = certify(problem, z);
+  problem.M = A.form();
+  const Certificate sparse = certify(problem, z);
+  problem.M = Matrix(A.form());
+  const Certificate dense = certify(problem, z);
+  EXPECT_EQ(sparse.unit_free_residual, dense.unit_free_residual);
+  EXPECT_EQ(sparse.rounding_floor, dense.rounding_floor);
+  EXPECT_NEAR(factored.unit_free_residual, dense.unit_free_residual, 1e-15);
+  EXPECT_NEAR(factored.natural_residual, dense.natural_residual, 1e-15);
+  EXPECT_NEAR(factored.rounding_floor, dense.rounding_floor, 1e-28);
+  EXPECT_NEAR(factored.backward_error, dense.backward_error, 1e-15);
+}
+
+TEST(Certificate, OfAnIslandIsThatOfTheIslandAlone) {
+  Matrix M = Matrix::Zero(3, 3);
+  M.topLeftCorner(2, 2) = Matrix{{2, 1}, {1, 2}};
+  M(2, 2) = 5.0;
+  const Problem problem = lcp(M, vector({-3, -3, 1e6}));
+  Islands islands;
+  islands.find(problem);
+  Certifier certifier;
+  std::vector<Certificate> each;
+  certifier.certify_islands(problem, vector({2, 0, 0}), islands, each);
+  ASSERT_EQ(each.size(), 2u);
+  const Certificate alone = certify(two_by_two(), vector({2, 0}));
+  EXPECT_EQ(each[0].unit_free_residual, alone.unit_free_residual);
+  EXPECT_EQ(each[0].natural_residual, alone.natural_residual);
+  EXPECT_EQ(each[0].rounding_floor, alone.rounding_floor);
+  EXPECT_EQ(each[0].worst_row, alone.worst_row);
+  EXPECT_EQ(each[1].unit_free_residual, 0.0);
+  EXPECT_EQ(each[1].worst_row, 2);
+  // the whole problem's residual hides the small island behind the large q
+  EXPECT_LT(certify(problem, vector({2, 0, 0})).unit_free_residual, 1e-5);
+}
+
+TEST(Certificate, AllocatesNothingTheSecondTime) {
+  Problem factored;
+  FactoredMatrix A;
+  A.mass.add_inverse(Matrix::Identity(6, 6));
+  A.mass.add_mass(Matrix::Identity(6, 6));
+  for (int i = 0; i < 6; ++i) {
+    A.add_row();
+    A.add_entry(0, Vector::Constant(6, 1.0 + i));
+    A.add_entry(1, Vector::Unit(6, i));
+  }
+  factored.M = A;
+  factored.q = Vector::Ones(6);
+  factored.cones = {{.normal_row = 0, .dimension = 3, .coefficient = 0.5},
+                    {.normal_row = 4, .dimension = 2, .coefficient = 0.5}};
+  Problem dense = factored;
+  dense.M = Matrix(A.form());
+  Problem sparse = factored;
+  sparse.M = A.form();
+  const Vector z = Vector::Ones(6);
+  Vector w;
+  for (const Problem* problem : {&factored, &dense, &sparse}) {
+    Certifier certifier;
+    Islands islands;
+    std::vector<Certificate> each;
+    const Certificate first = certifier.certify(*problem, z, &w);
+    islands.find(*problem);
+    certifier.certify_islands(*problem, z, islands, each);
+    const AllocationCount allocations;
+    const Certificate second = certifier.certify(*problem, z, &w);
+    islands.find(*problem);
+    certifier.certify_islands(*problem, z, islands, each);
+    EXPECT_EQ(allocations.count(), 0);
+    EXPECT_EQ(second.unit_free_residual, first.unit_free_residual);
+  }
 }
 
 TEST(Certificate, OfZeroQIsZeroForZeroAndInfiniteForAnythingWrong) {

@@ -72,6 +72,27 @@ TEST(FactoredMatrix, FormsJWJTransposedPlusCompliance) {
   }
 }
 
+TEST(FactoredMatrix, VisitsTheLowerTriangleOfWhatItForms) {
+  FactoredMatrix::VisitWorkspace workspace;
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    const Mixed mixed(seed);
+    const Matrix formed(mixed.A.form());
+    Matrix visited = Matrix::Constant(formed.rows(), formed.cols(), std::nan(""));
+    mixed.A.visit_lower(workspace, [&visited](Index i, Index j, double a) {
+      EXPECT_LE(j, i);
+      EXPECT_TRUE(std::isnan(visited(i, j))) << "visited twice";
+      visited(i, j) = a;
+    });
+    for (Index j = 0; j < formed.cols(); ++j) {
+      EXPECT_FALSE(std::isnan(visited(j, j)));
+      for (Index i = j; i < formed.rows(); ++i) {
+        const double a = std::isnan(visited(i, j)) ? 0.0 : visited(i, j);
+        EXPECT_NEAR(a, formed(i, j), 1e-13 * formed.cwiseAbs().maxCoeff());
+      }
+    }
+  }
+}
+
 TEST(FactoredMatrix, MultipliesAsTheFormedMatrixDoes) {
   const Mixed mixed(3);
   const Vector z{{1.0, -2.0, 0.5, 3.0, 0.0, 4.0}};

@@ -82,6 +82,27 @@ INSTANTIATE_TEST_SUITE_P(
                 p.limits = {{1, -1, 0.5}};
               },
               "normal row -1"},
+        Wrong{"ConeDimension",
+              [](Problem& p) {
+                p.cones = {{0, 1, 0.5}};
+              },
+              "dimension must be 2 or 3, got 1"},
+        Wrong{"ConeOutside",
+              [](Problem& p) {
+                p.cones = {{2, 2, 0.5}};
+              },
+              "at row 2: 2 rows do not fit a problem of 3 rows"},
+        Wrong{"ConesThatShareARow",
+              [](Problem& p) {
+                p.cones = {{0, 2, 0.5}, {1, 2, 0.5}};
+              },
+              "row 1 belongs to another"},
+        Wrong{"ConeOnACoupledLimit",
+              [](Problem& p) {
+                p.cones = {{1, 2, 0.5}};
+                p.limits = {{2, 0, 0.5}};
+              },
+              "row 2 belongs to another"},
         Wrong{"LimitOnItself",
               [](Problem& p) {
                 p.limits = {{1, 1, 0.5}};
@@ -136,6 +157,11 @@ INSTANTIATE_TEST_SUITE_P(
                               p.lower = Vector{{kInfinity, 0, 0}};
                             },
                             "lower[0] is inf"},
+                      Wrong{"NegativeConeFriction",
+                            [](Problem& p) {
+                              p.cones = {{0, 3, -0.5}};
+                            },
+                            "friction coefficient of the cone at row[0] is -0.5"},
                       Wrong{"NegativeFriction",
                             [](Problem& p) {
                               p.limits = {{1, 0, -1e-9}};
@@ -152,9 +178,6 @@ TEST(MatrixForm, DenseAndSparseMultiplyAlike) {
     Vector w(3);
     multiply(M, z.data(), w.data());
     EXPECT_EQ(w, (Vector{{4.0, -6.0, 5.0}}));
-    std::vector<long double> sizes;
-    absolute_multiply(M, z, sizes);
-    EXPECT_EQ(sizes, (std::vector<long double>{4.0L, 6.0L, 5.0L}));
     std::vector<long double> transposed;
     transpose_multiply(M, z, transposed);
     EXPECT_EQ(transposed, (std::vector<long double>{2.0L, -7.0L, -8.0L}));
