@@ -55,12 +55,12 @@ enum class FrictionLaw : std::uint8_t {
 /// rows of a cone obey friction_law.
 /// Units are the caller's: with z in N s and w in m/s, M is in 1/kg.
 struct Problem {
-  MatrixForm M;                      ///< n x n
-  Vector q;                          ///< n
-  Vector lower;                      ///< n, or empty: all 0
-  Vector upper;                      ///< n, or empty: all +inf
-  std::vector<CoupledLimit> limits;  ///< friction rows; overrides lower and upper of its row
-  std::vector<FrictionCone> cones;   ///< disjoint; overrides lower and upper of its rows
+  MatrixForm M;                          ///< n x n
+  Vector q;                              ///< n
+  Vector lower;                          ///< n, or empty: all 0
+  Vector upper;                          ///< n, or empty: all +inf
+  std::vector<CoupledLimit> limits;      ///< friction rows; overrides lower and upper of its row
+  std::vector<FrictionCone> cones = {};  ///< disjoint; overrides lower and upper of its rows
   FrictionLaw friction_law = FrictionLaw::kCoulomb;  ///< of all cones
 
   [[nodiscard]] Index size() const { return q.size(); }
