@@ -1,4 +1,5 @@
 #include <signorini/lcp/apgd.h>
+#include <signorini/lcp/dantzig.h>
 #include <signorini/lcp/interior_point.h>
 #include <signorini/lcp/lemke.h>
 #include <signorini/lcp/pgs.h>
@@ -31,6 +32,7 @@ constexpr std::array kEntries = {
     Entry{"lemke", &make<Lemke, LemkeSettings>},
     Entry{"interior-point", &make<InteriorPoint, InteriorPointSettings>},
     Entry{"apgd", &make<Apgd, ApgdSettings>},
+    Entry{"dantzig", &make<Dantzig, DantzigSettings>},
     Entry{"pgs", &make<Pgs, PgsSettings>},
 #ifdef SIGNORINI_HAS_GMP
     Entry{"exact", &make<ExactLemke, ExactLemkeSettings>},

@@ -1,0 +1,130 @@
+#include <signorini/lcp/principal_tableau.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace signorini::lcp {
+namespace {
+
+/// y -= factor x
+void subtract(int count, double factor, const double* __restrict x, double* __restrict y) {
+  for (int i = 0; i < count; ++i) {
+    y[i] -= factor * x[i];
+  }
+}
+
+}  // namespace
+
+void PrincipalTableau::reset(const SymmetricLcp& problem) {
+  problem_ = &problem;
+  n_ = problem.size();
+  factorizations_ = 0;
+  member_.assign(n_, 0);
+  column_.resize(n_);
+  right_.resize(n_);
+  table_.resize(static_cast<std::size_t>(n_) * n_);
+  load();
+}
+
+void PrincipalTableau::load() {
+  for (int j = 0; j < n_; ++j) {
+    if (problem_->is_dense()) {
+      std::copy(problem_->dense_column(j) + j, problem_->dense_column(j) + n_, at(j) + j);
+    } else {
+      std::fill(at(j) + j, at(j) + n_, 0.0);
+      for (int k = problem_->begin(j); k < problem_->end(j); ++k) {
+        if (problem_->row(k) >= j) {
+          at(j)[problem_->row(k)] = problem_->value(k);
+        }
+      }
+    }
+  }
+}
+
+void PrincipalTableau::column(int j, double* rate) {
+  for (int i = 0; i < j; ++i) {
+    rate[i] = at(i)[j];
+  }
+  std::copy(at(j) + j, at(j) + n_, rate + j);
+  for (int i = 0; i < n_; ++i) {
+    rate[i] = member_[i] != 0 ? -rate[i] : rate[i];
+  }
+}
+
+/// T - t t^T / p with t = T_j, p = t_j, but row and column j become t / |p| and the pivot -1 / p.
+bool PrincipalTableau::exchange(int j) {
+  double* t = column_.data();
+  for (int i = 0; i < j; ++i) {
+    t[i] = at(i)[j];
+  }
+  std::copy(at(j) + j, at(j) + n_, t + j);
+  const double inverse = 1.0 / t[j];
+  t[j] = 0.0;
+  for (int k = 0; k < n_; ++k) {
+    if (t[k] != 0.0) {
+      subtract(n_ - k, inverse * t[k], t + k, at(k) + k);
+    }
+  }
+  const double own = std::abs(inverse);
+  for (int i = 0; i < j; ++i) {
+    at(i)[j] = own * t[i];
+  }
+  for (int i = j; i < n_; ++i) {
+    at(j)[i] = own * t[i];
+  }
+  at(j)[j] = -inverse;
+  member_[j] = member_[j] != 0 ? 0 : 1;
+  return std::isfinite(inverse);
+}
+
+void PrincipalTableau::solve(double* x) {
+  members_.clear();
+  for (int i = 0; i < n_; ++i) {
+    if (member_[i] != 0) {
+      members_.push_back(i);
+      right_[i] = 0.0;
+    }
+  }
+  for (std::size_t a = 0; a < members_.size(); ++a) {
+    const int j = members_[a];
+    const double* column = at(j);
+    right_[j] -= column[j] * x[j];
+    for (std::size_t b = a + 1; b < members_.size(); ++b) {
+      const int i = members_[b];
+      right_[i] -= column[i] * x[j];
+      right_[j] -= column[i] * x[i];
+    }
+  }
+  for (const int i : members_) {
+    x[i] = right_[i];
+  }
+}
+
+/// The sweeps of the whole of C again, largest pivot first.
+bool PrincipalTableau::refactor() {
+  ++factorizations_;
+  members_.clear();
+  for (int i = 0; i < n_; ++i) {
+    if (member_[i] != 0) {
+      members_.push_back(i);
+      member_[i] = 0;
+    }
+  }
+  load();
+  while (!members_.empty()) {
+    const auto best = std::max_element(members_.begin(), members_.end(),
+                                       [this](int a, int b) { return at(a)[a] < at(b)[b]; });
+    const int j = *best;
+    if (!(at(j)[j] > 0.0)) {
+      return false;
+    }
+    *best = members_.back();
+    members_.pop_back();
+    if (!exchange(j)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace signorini::lcp
