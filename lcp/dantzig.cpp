@@ -43,6 +43,9 @@ Dantzig::Dantzig(const DantzigSettings& settings) : settings_(settings) {
 }
 
 std::string Dantzig::refuses(const Problem& problem) const {
+  if (!problem.cones.empty()) {
+    return "takes bounds and coupled limits, no friction cones";
+  }
   const std::string asymmetry = SymmetricLcp::find_asymmetry(problem);
   return asymmetry.empty() ? "" : "takes a symmetric M; " + asymmetry;
 }

@@ -295,6 +295,12 @@ TEST(Dantzig, RefusesAnAsymmetricMatrix) {
   EXPECT_THROW(solve(lcp(Matrix{{2, 1}, {0, 2}}, Vector{{-1.0, -2.0}})), std::invalid_argument);
 }
 
+TEST(Dantzig, RefusesCones) {
+  Problem problem = lcp(Matrix::Identity(3, 3), Vector::Constant(3, -1.0));
+  problem.cones.push_back({0, 3, 0.5});
+  EXPECT_THROW(solve(problem), std::invalid_argument);
+}
+
 TEST(Dantzig, SettingsAreChecked) {
   DantzigSettings settings;
   settings.dependence_tolerance = 0.0;
