@@ -15,14 +15,9 @@ namespace {
 using Vec3 = Eigen::Vector3d;
 using Random = std::mt19937_64;
 
-constexpr int kGround = -1;
+using Touch = FamilyScene::Touch;
 
-struct Touch {
-  int below;  // a body or kGround; the normal points from it to `above`
-  int above;
-  Vec3 point;
-  Vec3 normal;
-};
+constexpr int kGround = FamilyScene::kGround;
 
 struct Arrangement {
   std::vector<Vec3> centres;
@@ -222,7 +217,36 @@ std::span<const std::string_view> family_names() {
   return kFamilies;
 }
 
-lcp::Problem make_family(const FamilySpec& spec) {
+lcp::FactoredMatrix FamilyScene::inverse_mass() const {
+  lcp::FactoredMatrix A;
+  for (std::size_t i = 0; i < centres.size(); ++i) {
+    lcp::Vector inverse(6);
+    inverse << Vec3::Constant(1.0 / masses[i]), Vec3::Constant(1.0 / inertias[i]);
+    A.mass.add_inverse(lcp::Matrix(inverse.asDiagonal()));
+  }
+  return A;
+}
+
+void FamilyScene::add_row(const Touch& touch, const Vec3& direction, lcp::FactoredMatrix& A) const {
+  A.add_row();
+  for (const auto& [body, sign] : {std::pair(touch.below, -1.0), std::pair(touch.above, 1.0)}) {
+    if (body != kGround) {
+      const Vec3 arm = touch.point - centres[body];
+      lcp::Vector values(6);
+      values << sign * direction, sign * arm.cross(direction);
+      A.add_entry(body, values);
+    }
+  }
+}
+
+lcp::Vector FamilyScene::free_row_velocities(const lcp::FactoredMatrix& A) const {
+  lcp::Vector velocities(A.rows());
+  const lcp::Vector none = lcp::Vector::Zero(A.rows());
+  A.times(free_velocity.data(), none.data(), velocities.data());
+  return velocities;
+}
+
+FamilyScene make_family_scene(const FamilySpec& spec) {
   if (spec.size < 1) {
     throw std::invalid_argument("size: must be >= 1, got " + std::to_string(spec.size));
   }
@@ -231,32 +255,28 @@ lcp::Problem make_family(const FamilySpec& spec) {
                                 std::to_string(spec.mass_ratio));
   }
   Random random(spec.seed);
-  const Arrangement a = arrange(spec, random);
-  const int bodies = static_cast<int>(a.centres.size());
-  lcp::FactoredMatrix A;
+  Arrangement arrangement = arrange(spec, random);
+  const int bodies = static_cast<int>(arrangement.centres.size());
+  FamilyScene scene;
+  scene.centres = std::move(arrangement.centres);
+  scene.touches = std::move(arrangement.touches);
   for (int i = 0; i < bodies; ++i) {
     const double mass = mass_of(spec, i, random);
-    const double inertia = mass * (spec.family == "spheres" ? 0.1 : 1.0 / 6.0);
-    lcp::Vector inverse(6);
-    inverse << Vec3::Constant(1.0 / mass), Vec3::Constant(1.0 / inertia);
-    A.mass.add_inverse(lcp::Matrix(inverse.asDiagonal()));
+    scene.masses.push_back(mass);
+    scene.inertias.push_back(mass * (spec.family == "spheres" ? 0.1 : 1.0 / 6.0));
   }
-  for (const Touch& touch : a.touches) {
-    A.add_row();
-    for (const auto& [body, sign] : {std::pair(touch.below, -1.0), std::pair(touch.above, 1.0)}) {
-      if (body != kGround) {
-        const Vec3 arm = touch.point - a.centres[body];
-        lcp::Vector values(6);
-        values << sign * touch.normal, sign * arm.cross(touch.normal);
-        A.add_entry(body, values);
-      }
-    }
+  scene.free_velocity = free_velocity(spec, bodies, random);
+  return scene;
+}
+
+lcp::Problem make_family(const FamilySpec& spec) {
+  const FamilyScene scene = make_family_scene(spec);
+  lcp::FactoredMatrix A = scene.inverse_mass();
+  for (const Touch& touch : scene.touches) {
+    scene.add_row(touch, touch.normal, A);
   }
-  const lcp::Vector v = free_velocity(spec, bodies, random);
   lcp::Problem problem;
-  problem.q.resize(A.rows());
-  const lcp::Vector none = lcp::Vector::Zero(A.rows());
-  A.times(v.data(), none.data(), problem.q.data());
+  problem.q = scene.free_row_velocities(A);
   problem.M = std::move(A);
   return problem;
 }

@@ -2,9 +2,11 @@
 
 #include <signorini/lcp/problem.h>
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace signorini::bench {
 
@@ -27,7 +29,33 @@ struct FamilySpec {
 /// pyramid3d, spheres.
 [[nodiscard]] std::span<const std::string_view> family_names();
 
+/// A family before it becomes rows: bodies of isotropic inertia, contacts, free velocities.
+struct FamilyScene {
+  static constexpr int kGround = -1;
+  struct Touch {
+    int below;  ///< a body or kGround
+    int above;  ///< a body
+    Eigen::Vector3d point;
+    Eigen::Vector3d normal;  ///< unit, from `below` to `above`
+  };
+  std::vector<Eigen::Vector3d> centres;  ///< of mass, m
+  std::vector<double> masses;            ///< kg
+  std::vector<double> inertias;          ///< about any axis, kg m^2
+  std::vector<Touch> touches;
+  lcp::Vector free_velocity;  ///< v*: [linear, angular] of every body, m/s and rad/s
+
+  /// The inverse mass, one block of six a body.
+  [[nodiscard]] lcp::FactoredMatrix inverse_mass() const;
+  /// Adds the row of `direction` at a touch: + on the body above, - on the one below.
+  void add_row(const Touch& touch, const Eigen::Vector3d& direction, lcp::FactoredMatrix& A) const;
+  /// J v*, one number a row of A.
+  [[nodiscard]] lcp::Vector free_row_velocities(const lcp::FactoredMatrix& A) const;
+};
+
 /// @throws std::invalid_argument naming family, size or mass_ratio and the bound.
+[[nodiscard]] FamilyScene make_family_scene(const FamilySpec& spec);
+
+/// The normal rows of make_family_scene() as an LCP. @throws as it does.
 [[nodiscard]] lcp::Problem make_family(const FamilySpec& spec);
 
 }  // namespace signorini::bench
