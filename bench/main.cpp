@@ -1,6 +1,8 @@
 #include <signorini/lcp/io/whole_file.h>
 
 #include "bench/impact_study.h"
+#include "bench/one_thread.h"
+#include "bench/peers_command.h"
 
 #ifdef SIGNORINI_HAS_GMP
 #include "bench/exactness_study.h"
@@ -82,7 +84,8 @@ int run_impacts(const StudyOptions& options) {
 int run(int argc, char** argv) {
   CLI::App app{
       "Long studies of Signorini. Each prints a table and judges every answer it counts.\n"
-      "Exit: 0 every claim holds, 1 one was wrong, 64 bad usage, 70 the study could not run."};
+      "Exit: 0 every claim holds, 1 one was wrong, 64 bad usage, 70 the study could not run,\n"
+      "130 interrupted (what was measured is written)."};
   app.set_version_flag("--version", SIGNORINI_VERSION);
   app.require_subcommand(1);
   StudyOptions exactness{.count = 100000};
@@ -92,10 +95,15 @@ int run(int argc, char** argv) {
                 "problems", exactness);
   add_study(app, "impacts", "Random multi-contact impacts: the kinetic energy each law gains",
             "impacts", impacts);
+  const PeersCommand peers(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kBadUsage;
+  }
+  if (peers.is_asked()) {
+    pin_libraries_to_one_thread(argv);
+    return peers.run();
   }
   return exactness_command->parsed() ? run_exactness(exactness) : run_impacts(impacts);
 }

@@ -43,6 +43,19 @@ TEST_F(BenchProgram, ImpactsWritesItsCsv) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "impacts.csv"));
 }
 
+TEST_F(BenchProgram, PeersWritesTableProfileAndCsv) {
+  EXPECT_EQ(run("peers --families spheres,murty --sizes 8 --solvers lemke,pgs --out '" +
+                folder_.string() + "'"),
+            0);
+  for (const char* file : {"peers.csv", "peers.md", "peers-profile.svg"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder_ / file)) << file;
+  }
+  EXPECT_EQ(run("peers --list"), 0);
+  EXPECT_EQ(run("peers --time-limit 0"), 64);
+  EXPECT_EQ(run("peers --families castle"), 70);
+  EXPECT_EQ(run("peers /no/such/folder"), 70);
+}
+
 #ifdef SIGNORINI_HAS_GMP
 TEST_F(BenchProgram, ExactnessWritesItsCsvAndNothingElse) {
   EXPECT_EQ(run("exactness --problems 40 --seed 5 --out '" + folder_.string() + "'"), 0);

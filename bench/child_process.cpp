@@ -1,0 +1,256 @@
+#include "bench/child_process.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdint>
+#include <cstring>
+#include <exception>
+#include <fcntl.h>
+#include <fstream>
+#include <optional>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <system_error>
+#include <unistd.h>
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define SIGNORINI_SANITIZED 1
+#endif
+
+namespace signorini::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+volatile std::sig_atomic_t stopped = 0;
+
+// What travels through the pipe: one letter; after an answer or a reason its length and its bytes.
+constexpr char kLoaded = 'l';
+constexpr char kAnswer = 'a';
+constexpr char kReason = 'r';
+
+std::system_error last_error(const char* what) {
+  return std::system_error(errno, std::generic_category(), what);
+}
+
+/// A file descriptor that is closed at the end.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() { close(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  [[nodiscard]] int number() const { return number_; }
+  void close() {
+    if (number_ >= 0) {
+      ::close(number_);
+      number_ = -1;
+    }
+  }
+
+ private:
+  int number_;
+};
+
+void write_all(int pipe, const char* bytes, std::size_t count) {
+  while (count > 0) {
+    const ssize_t written = ::write(pipe, bytes, count);
+    if (written < 0 && errno == EINTR) {
+      continue;
+    }
+    if (written <= 0) {
+      ::_exit(1);
+    }
+    bytes += written;
+    count -= static_cast<std::size_t>(written);
+  }
+}
+
+void write_message(int pipe, char kind, std::string_view bytes) {
+  const std::uint64_t count = bytes.size();
+  char head[1 + sizeof count] = {kind};
+  std::memcpy(head + 1, &count, sizeof count);
+  write_all(pipe, head, sizeof head);
+  write_all(pipe, bytes.data(), bytes.size());
+}
+
+#ifndef SIGNORINI_SANITIZED
+std::size_t address_space_in_use() {
+  std::ifstream file("/proc/self/statm");
+  std::size_t pages = 0;
+  file >> pages;
+  return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+}
+#endif
+
+void limit_resources(const ChildLimits& limits) {
+  const rlimit no_core = {0, 0};
+  ::setrlimit(RLIMIT_CORE, &no_core);
+#ifndef SIGNORINI_SANITIZED
+  const std::size_t bytes = address_space_in_use() + limits.bytes;
+  const rlimit space = {bytes, bytes};
+  ::setrlimit(RLIMIT_AS, &space);
+#else
+  static_cast<void>(limits);
+#endif
+}
+
+void silence(int descriptor) {
+  const int nowhere = ::open("/dev/null", O_RDWR);
+  if (nowhere >= 0) {
+    ::dup2(nowhere, descriptor);
+    ::close(nowhere);
+  }
+}
+
+[[noreturn]] void run_child(const ChildWork& work, const ChildLimits& limits, int pipe,
+                            pid_t parent) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) {
+    ::_exit(1);  // the parent died first
+  }
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL}) {
+    ::signal(signal, SIG_DFL);
+  }
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    silence(descriptor);
+  }
+  limit_resources(limits);
+  try {
+    write_message(pipe, kAnswer, work([pipe] { write_message(pipe, kLoaded, {}); }));
+  } catch (const std::bad_alloc&) {
+    write_message(pipe, kReason, "out of memory");
+  } catch (const std::exception& error) {
+    write_message(pipe, kReason, error.what());
+  } catch (...) {
+    write_message(pipe, kReason, "an exception of unknown type");
+  }
+  ::_exit(0);  // no destructors, no buffers of the parent's streams
+}
+
+struct Message {
+  char kind;
+  std::string bytes;
+};
+
+/// The first whole message of what has arrived, taken out of it.
+std::optional<Message> take_message(std::string& arrived) {
+  std::uint64_t count = 0;
+  if (arrived.size() < 1 + sizeof count) {
+    return std::nullopt;
+  }
+  std::memcpy(&count, arrived.data() + 1, sizeof count);
+  const std::size_t head = 1 + sizeof count;
+  if (arrived.size() - head < count) {
+    return std::nullopt;
+  }
+  Message message{arrived[0], arrived.substr(head, count)};
+  arrived.erase(0, head + count);
+  return message;
+}
+
+std::string describe_status(int status) {
+  if (WIFSIGNALED(status)) {
+    const int signal = WTERMSIG(status);
+    return "signal " + std::to_string(signal) + " (" + ::strsignal(signal) + ")";
+  }
+  return "exit " + std::to_string(WEXITSTATUS(status)) + " without an answer";
+}
+
+/// Listens until the child has answered, ended or used up its time.
+ChildAnswer listen(int pipe, const ChildLimits& limits) {
+  ChildAnswer result;
+  result.reason.clear();
+  std::string arrived;
+  Clock::time_point deadline =
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                         std::chrono::duration<double>(limits.loading_seconds));
+  while (true) {
+    while (std::optional<Message> message = take_message(arrived)) {
+      if (message->kind == kLoaded) {
+        result.is_loaded = true;
+        deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                      std::chrono::duration<double>(limits.seconds));
+        continue;
+      }
+      result.end = message->kind == kAnswer ? ChildEnd::kAnswered : ChildEnd::kCrashed;
+      (message->kind == kAnswer ? result.answer : result.reason) = std::move(message->bytes);
+      return result;
+    }
+    if (stopped != 0) {
+      result.end = ChildEnd::kInterrupted;
+      return result;
+    }
+    const auto left =
+        std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now());
+    if (left.count() <= 0) {
+      result.end = ChildEnd::kTimedOut;
+      result.reason = result.is_loaded ? "time limit" : "time limit while loading";
+      return result;
+    }
+    pollfd wait = {pipe, POLLIN, 0};
+    // At most 100 ms, so that a signal between the check and the wait is seen soon.
+    if (::poll(&wait, 1, static_cast<int>(std::min<long>(left.count() + 1, 100))) <= 0) {
+      continue;
+    }
+    char bytes[65536];
+    const ssize_t count = ::read(pipe, bytes, sizeof bytes);
+    if (count > 0) {
+      arrived.append(bytes, static_cast<std::size_t>(count));
+    } else if (count == 0) {
+      result.end = ChildEnd::kCrashed;
+      return result;
+    }
+  }
+}
+
+int wait_for(pid_t child) {
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return status;
+}
+
+}  // namespace
+
+ChildAnswer run_in_child(const ChildWork& work, const ChildLimits& limits) {
+  if (stopped != 0) {
+    return {.end = ChildEnd::kInterrupted, .answer = {}, .reason = {}, .is_loaded = false};
+  }
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) != 0) {
+    throw last_error("pipe");
+  }
+  Descriptor read_end(ends[0]);
+  Descriptor write_end(ends[1]);
+  const pid_t parent = ::getpid();
+  const pid_t child = ::fork();
+  if (child < 0) {
+    throw last_error("fork");
+  }
+  if (child == 0) {
+    run_child(work, limits, write_end.number(), parent);
+  }
+  write_end.close();
+  ChildAnswer result = listen(read_end.number(), limits);
+  ::kill(child, SIGKILL);  // it has answered, or it never will; no effect on one that has died
+  const int status = wait_for(child);
+  if (result.end == ChildEnd::kCrashed && result.reason.empty()) {
+    result.reason = describe_status(status);
+  }
+  return result;
+}
+
+void stop_children() {
+  stopped = 1;
+}
+
+bool children_are_stopped() {
+  return stopped != 0;
+}
+
+}  // namespace signorini::bench

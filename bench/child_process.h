@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace signorini::bench {
+
+/// What work in a child process may use.
+struct ChildLimits {
+  double seconds = 60.0;                     ///< wall time from the last report to the answer, > 0
+  double loading_seconds = 60.0;             ///< wall time up to the first report, > 0
+  std::size_t bytes = std::size_t{4} << 30;  ///< address space on top of what the parent uses; not
+                                             ///< enforced under the sanitizers, whose shadow
+                                             ///< memory is larger than any limit
+};
+
+/// How a child ended.
+enum class ChildEnd : unsigned char {
+  kAnswered,     ///< the work returned; its answer is here
+  kTimedOut,     ///< killed at the time limit
+  kCrashed,      ///< a signal, an exit without an answer, or an exception
+  kInterrupted,  ///< this process was told to stop, see stop_children()
+};
+
+struct ChildAnswer {
+  ChildEnd end = ChildEnd::kCrashed;
+  std::string answer;      ///< what the work returned, kAnswered only
+  std::string reason;      ///< of kTimedOut and kCrashed: "signal 11 (Segmentation fault)"
+  bool is_loaded = false;  ///< the work had called its `loaded` argument
+};
+
+/// Work for a child: returns the answer, any bytes; calls `loaded` once what it needs is in place,
+/// from when the time limit counts.
+using ChildWork = std::function<std::string(const std::function<void()>& loaded)>;
+
+/// Forks, runs the work in the child with the limits, and brings its answer back through a pipe.
+/// Whatever the work does (crash, hang, print, exit, exhaust memory), this process goes on: the
+/// child is killed at its limit and dies with its parent; its standard output and error are closed.
+/// Call from a process with one thread. Cost: one fork.
+///
+/// @throws std::system_error if there is no pipe or no process to be had.
+[[nodiscard]] ChildAnswer run_in_child(const ChildWork& work, const ChildLimits& limits);
+
+/// Ends the running child, and every later one at once, with kInterrupted. Safe in a signal
+/// handler.
+void stop_children();
+/// True after stop_children().
+[[nodiscard]] bool children_are_stopped();
+
+}  // namespace signorini::bench

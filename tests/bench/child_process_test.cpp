@@ -1,0 +1,119 @@
+#include "bench/child_process.h"
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <gtest/gtest.h>
+#include <stdexcept>
+#include <unistd.h>
+#include <vector>
+
+namespace signorini::bench {
+namespace {
+
+using Loaded = std::function<void()>;
+
+TEST(ChildProcess, BringsAnyBytesBack) {
+  std::string bytes(300000, 'x');
+  bytes[7] = '\0';
+  const ChildAnswer child = run_in_child([&](const Loaded&) { return bytes; }, {});
+  ASSERT_EQ(child.end, ChildEnd::kAnswered);
+  EXPECT_EQ(child.answer, bytes);
+  EXPECT_FALSE(child.is_loaded);
+}
+
+TEST(ChildProcess, WhatTheChildChangesStaysThere) {
+  int number = 1;
+  const ChildAnswer child = run_in_child(
+      [&](const Loaded&) {
+        number = 2;
+        return std::to_string(number);
+      },
+      {});
+  EXPECT_EQ(child.answer, "2");
+  EXPECT_EQ(number, 1);
+}
+
+TEST(ChildProcess, ASignalIsACrashWithItsName) {
+  const ChildAnswer child = run_in_child(
+      [](const Loaded&) -> std::string {
+        ::raise(SIGKILL);
+        return "never";
+      },
+      {});
+  EXPECT_EQ(child.end, ChildEnd::kCrashed);
+  EXPECT_EQ(child.reason, "signal 9 (Killed)");
+}
+
+TEST(ChildProcess, AnExitWithoutAnAnswerIsACrash) {
+  const ChildAnswer child = run_in_child(
+      [](const Loaded&) -> std::string {
+        std::printf("what a child prints is dropped\n");
+        ::_exit(0);
+      },
+      {});
+  EXPECT_EQ(child.end, ChildEnd::kCrashed);
+  EXPECT_EQ(child.reason, "exit 0 without an answer");
+}
+
+TEST(ChildProcess, AnExceptionIsACrashWithItsText) {
+  const ChildAnswer child = run_in_child(
+      [](const Loaded&) -> std::string { throw std::runtime_error("no such thing"); }, {});
+  EXPECT_EQ(child.end, ChildEnd::kCrashed);
+  EXPECT_EQ(child.reason, "no such thing");
+}
+
+TEST(ChildProcess, AHangEndsAtItsTimeLimit) {
+  const ChildWork hang = [](const Loaded& loaded) -> std::string {
+    loaded();
+    while (true) {
+      ::pause();
+    }
+  };
+  const ChildAnswer child = run_in_child(hang, {.seconds = 0.2});
+  EXPECT_EQ(child.end, ChildEnd::kTimedOut);
+  EXPECT_EQ(child.reason, "time limit");
+  EXPECT_TRUE(child.is_loaded);
+  const ChildAnswer loading = run_in_child(
+      [](const Loaded&) -> std::string {
+        while (true) {
+          ::pause();
+        }
+      },
+      {.seconds = 100.0, .loading_seconds = 0.2});
+  EXPECT_EQ(loading.end, ChildEnd::kTimedOut);
+  EXPECT_EQ(loading.reason, "time limit while loading");
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST(ChildProcess, MemoryAboveTheLimitIsRefused) {
+  const ChildAnswer child = run_in_child(
+      [](const Loaded&) {
+        const std::vector<double> much(std::size_t{1} << 26, 1.0);  // half a GiB
+        return std::to_string(much[much.size() / 2]);
+      },
+      {.bytes = std::size_t{1} << 28});
+  EXPECT_EQ(child.end, ChildEnd::kCrashed);
+  EXPECT_EQ(child.reason, "out of memory");
+}
+#endif
+
+/// The last test: what is stopped stays stopped.
+TEST(ChildProcessStopped, EndsTheRunningChildAndEveryLaterOne) {
+  std::signal(SIGALRM, [](int) { stop_children(); });
+  ::alarm(1);
+  const ChildAnswer child = run_in_child(
+      [](const Loaded&) -> std::string {
+        while (true) {
+          ::pause();
+        }
+      },
+      {});
+  EXPECT_EQ(child.end, ChildEnd::kInterrupted);
+  EXPECT_TRUE(children_are_stopped());
+  EXPECT_EQ(run_in_child([](const Loaded&) { return std::string(); }, {}).end,
+            ChildEnd::kInterrupted);
+}
+
+}  // namespace
+}  // namespace signorini::bench
