@@ -1,3 +1,4 @@
+#include <signorini/lcp/block_cholesky.h>
 #include <signorini/lcp/sparse_cholesky.h>
 
 #include <Eigen/SparseCholesky>
@@ -33,16 +34,27 @@ class EigenSimplicial final : public SparseCholesky {
       x = factor_.solve(x).eval();
     }
   }
+  [[nodiscard]] SparseCholeskyCounts counts() const override {
+    SparseCholeskyCounts counts;
+    const SparseMatrix& L = factor_.matrixL().nestedExpression();
+    for (Index j = 0; j < L.cols(); ++j) {
+      const double length = 1.0 + (L.outerIndexPtr()[j + 1] - L.outerIndexPtr()[j]);
+      counts.entries += length;
+      counts.flops += length * length;
+    }
+    counts.bytes = static_cast<std::size_t>(L.nonZeros()) * (sizeof(double) + sizeof(int));
+    return counts;
+  }
 
  private:
   Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>> factor_;
 };
 
-constexpr std::array kNames = {
+constexpr std::array kNames = {std::string_view("block"),
 #ifdef SIGNORINI_HAS_CHOLMOD
-    std::string_view("cholmod"),
+                               std::string_view("cholmod"),
 #endif
-    std::string_view("eigen")};
+                               std::string_view("eigen")};
 
 }  // namespace
 
@@ -57,6 +69,9 @@ std::unique_ptr<SparseCholesky> make_sparse_cholesky(std::string_view name) {
     return make_cholmod();
   }
 #endif
+  if (wanted == "block") {
+    return std::make_unique<BlockCholesky>();
+  }
   if (wanted == "eigen") {
     return std::make_unique<EigenSimplicial>();
   }

@@ -91,6 +91,9 @@ class Cholmod final : public SparseCholesky {
     }
     std::memcpy(x.data(), solution_->x, sizeof(double) * right.nrow);
   }
+  [[nodiscard]] SparseCholeskyCounts counts() const override {
+    return {common_.lnz, common_.fl, common_.memory_usage};
+  }
 
  private:
   /// The matrix as CHOLMOD sees it; the matrix keeps its memory and is not written.

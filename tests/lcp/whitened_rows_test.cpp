@@ -211,6 +211,7 @@ TEST_P(SparseCholeskyBackEnd, RefusesAnIndefiniteMatrix) {
   lower.insert(0, 0) = 1.0;
   lower.insert(1, 0) = 2.0;
   lower.insert(1, 1) = 1.0;
+  lower.makeCompressed();
   const auto cholesky = make_sparse_cholesky(GetParam());
   cholesky->analyse(lower);
   EXPECT_FALSE(cholesky->factor(lower));

@@ -1,0 +1,375 @@
+#include <signorini/lcp/dense_kernels.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+// One source for every instruction set: the loops are templates over a vector type, inlined into
+// functions that are compiled for the set (gcc and clang vector extensions).
+#define SIGNORINI_INLINE [[gnu::always_inline]] inline
+
+namespace signorini::lcp {
+namespace {
+
+using Stride = std::ptrdiff_t;
+
+// Unaligned loads and stores: alignment is that of a double.
+using Two = double __attribute__((vector_size(16), aligned(8), may_alias));
+using Four = double __attribute__((vector_size(32), aligned(8), may_alias));
+using Eight = double __attribute__((vector_size(64), aligned(8), may_alias));
+
+template <typename V>
+constexpr int kLanes = static_cast<int>(sizeof(V) / sizeof(double));
+
+constexpr int kBlock = 8;    // columns factored together
+constexpr int kDepth = 128;  // inner length of a product at a time: what the first cache holds
+
+/// C (kVectors vectors of rows, kColumns columns) -= A B^T over `depth` columns of A and B.
+template <typename V, int kVectors, int kColumns>
+SIGNORINI_INLINE void subtract_tile(double* C, Stride ldc, const double* A, const double* B,
+                                    Stride ld, int depth) {
+  V sum[kColumns][kVectors];
+#pragma GCC unroll 8
+  for (int j = 0; j < kColumns; ++j) {
+#pragma GCC unroll 4
+    for (int i = 0; i < kVectors; ++i) {
+      sum[j][i] = V{};
+    }
+  }
+  for (int k = 0; k < depth; ++k, A += ld, B += ld) {
+    V a[kVectors];
+#pragma GCC unroll 4
+    for (int i = 0; i < kVectors; ++i) {
+      a[i] = *reinterpret_cast<const V*>(A + i * kLanes<V>);
+    }
+#pragma GCC unroll 8
+    for (int j = 0; j < kColumns; ++j) {
+#pragma GCC unroll 4
+      for (int i = 0; i < kVectors; ++i) {
+        sum[j][i] += a[i] * B[j];
+      }
+    }
+  }
+#pragma GCC unroll 8
+  for (int j = 0; j < kColumns; ++j) {
+#pragma GCC unroll 4
+    for (int i = 0; i < kVectors; ++i) {
+      V* c = reinterpret_cast<V*>(C + j * ldc + i * kLanes<V>);
+      *c = *c - sum[j][i];
+    }
+  }
+}
+
+/// The same for any number of rows, in whole vectors: rows behind the last are scratch.
+template <typename V, int kVectors, int kColumns>
+SIGNORINI_INLINE void subtract_columns(double* C, Stride ldc, const double* A, const double* B,
+                                       Stride ld, int rows, int depth) {
+  int i = 0;
+  for (; rows - i > (kVectors - 1) * kLanes<V>; i += kVectors * kLanes<V>) {
+    subtract_tile<V, kVectors, kColumns>(C + i, ldc, A + i, B, ld, depth);
+  }
+  if constexpr (kVectors > 2) {
+    if (rows - i > kLanes<V>) {
+      subtract_tile<V, 2, kColumns>(C + i, ldc, A + i, B, ld, depth);
+      return;
+    }
+  }
+  if (rows - i > 0) {
+    subtract_tile<V, 1, kColumns>(C + i, ldc, A + i, B, ld, depth);
+  }
+}
+
+/// The same for 1 to kBlock columns.
+template <typename V, int kVectors, int kColumns>
+SIGNORINI_INLINE void subtract_block(double* C, Stride ldc, const double* A, const double* B,
+                                     Stride ld, int rows, int columns, int depth) {
+  int j = 0;
+  for (; j + kColumns <= columns; j += kColumns) {
+    subtract_columns<V, kVectors, kColumns>(C + j * ldc, ldc, A, B + j, ld, rows, depth);
+  }
+  if constexpr (kColumns > 4) {
+    if (j + 4 <= columns) {
+      subtract_columns<V, kVectors, 4>(C + j * ldc, ldc, A, B + j, ld, rows, depth);
+      j += 4;
+    }
+  }
+  if constexpr (kColumns > 2) {
+    if (j + 2 <= columns) {
+      subtract_columns<V, kVectors, 2>(C + j * ldc, ldc, A, B + j, ld, rows, depth);
+      j += 2;
+    }
+  }
+  if (j < columns) {
+    subtract_columns<V, kVectors, 1>(C + j * ldc, ldc, A, B + j, ld, rows, depth);
+  }
+}
+
+/// L of the kSize x kSize block at `block`, into L (column-major); the inverses of its diagonal.
+template <int kSize>
+SIGNORINI_INLINE bool factor_diagonal(const double* block, Stride ld, double* L, double* inverse) {
+#pragma GCC unroll 8
+  for (int c = 0; c < kSize; ++c) {
+#pragma GCC unroll 8
+    for (int r = c; r < kSize; ++r) {
+      L[c * kSize + r] = block[c * ld + r];
+    }
+  }
+#pragma GCC unroll 8
+  for (int c = 0; c < kSize; ++c) {
+    const double pivot = L[c * kSize + c];
+    if (!(pivot > 0.0 && pivot <= 1.7976931348623157e308)) {
+      return false;
+    }
+    const double root = std::sqrt(pivot);
+    L[c * kSize + c] = root;
+    inverse[c] = 1.0 / root;
+#pragma GCC unroll 8
+    for (int r = c + 1; r < kSize; ++r) {
+      L[c * kSize + r] *= inverse[c];
+    }
+#pragma GCC unroll 8
+    for (int k = c + 1; k < kSize; ++k) {
+#pragma GCC unroll 8
+      for (int r = k; r < kSize; ++r) {
+        L[k * kSize + r] -= L[c * kSize + r] * L[c * kSize + k];
+      }
+    }
+  }
+  return true;
+}
+
+/// Factors kSize columns of which everything to the left has been subtracted.
+template <typename V, int kSize>
+SIGNORINI_INLINE bool factor_block(double* panel, Stride ld, int first, int rows) {
+  double L[kSize * kSize];
+  double inverse[kSize];
+  double* diagonal = panel + first * ld + first;
+  if (!factor_diagonal<kSize>(diagonal, ld, L, inverse)) {
+    return false;
+  }
+  // Rows below, in whole vectors from an aligned row on; what that does to the diagonal block is
+  // overwritten.
+  const int start = (first + kSize) / kLanes<V> * kLanes<V>;
+  for (int i = start; i < rows; i += kLanes<V>) {
+    double* row = panel + first * ld + i;
+    V x[kSize];
+#pragma GCC unroll 8
+    for (int c = 0; c < kSize; ++c) {
+      V value = *reinterpret_cast<const V*>(row + c * ld);
+#pragma GCC unroll 8
+      for (int k = 0; k < c; ++k) {
+        value -= x[k] * L[k * kSize + c];
+      }
+      x[c] = value * inverse[c];
+    }
+#pragma GCC unroll 8
+    for (int c = 0; c < kSize; ++c) {
+      *reinterpret_cast<V*>(row + c * ld) = x[c];
+    }
+  }
+#pragma GCC unroll 8
+  for (int c = 0; c < kSize; ++c) {
+#pragma GCC unroll 8
+    for (int r = c; r < kSize; ++r) {
+      diagonal[c * ld + r] = L[c * kSize + r];
+    }
+  }
+  return true;
+}
+
+template <typename V>
+SIGNORINI_INLINE bool factor_any_block(double* panel, Stride ld, int first, int rows, int size) {
+  switch (size) {
+    case 1: return factor_block<V, 1>(panel, ld, first, rows);
+    case 2: return factor_block<V, 2>(panel, ld, first, rows);
+    case 3: return factor_block<V, 3>(panel, ld, first, rows);
+    case 4: return factor_block<V, 4>(panel, ld, first, rows);
+    case 5: return factor_block<V, 5>(panel, ld, first, rows);
+    case 6: return factor_block<V, 6>(panel, ld, first, rows);
+    case 7: return factor_block<V, 7>(panel, ld, first, rows);
+    default: return factor_block<V, 8>(panel, ld, first, rows);
+  }
+}
+
+template <typename V, int kVectors, int kColumns>
+SIGNORINI_INLINE bool factor_panel(double* panel, int ld, int rows, int columns) {
+  for (int first = 0; first < columns; first += kBlock) {
+    const int size = std::min(kBlock, columns - first);
+    if (first > 0) {  // first is a multiple of kBlock: whole vectors stay inside the column
+      subtract_block<V, kVectors, kColumns>(panel + static_cast<Stride>(first) * ld + first, ld,
+                                            panel + first, panel + first, ld, rows - first, size,
+                                            first);
+    }
+    if (!factor_any_block<V>(panel, ld, first, rows, size)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+template <typename V, int kVectors, int kColumns>
+SIGNORINI_INLINE void subtract_square(double* square, int ld_square, const double* below, int ld,
+                                      int size, int columns) {
+  for (int k = 0; k < columns; k += kDepth) {
+    const int depth = std::min(kDepth, columns - k);
+    const double* B = below + static_cast<Stride>(k) * ld;
+    for (int j = 0; j < size; j += kBlock) {
+      subtract_block<V, kVectors, kColumns>(square + static_cast<Stride>(j) * ld_square + j,
+                                            ld_square, B + j, B + j, ld, size - j,
+                                            std::min(kBlock, size - j), depth);
+    }
+  }
+}
+
+/// y -= L x for four columns of L at a time, whole vectors.
+template <typename V>
+SIGNORINI_INLINE void subtract_times(const double* L, Stride ld, int rows, int columns,
+                                     const double* x, double* y) {
+  int c = 0;
+  for (; c + 4 <= columns; c += 4, L += 4 * ld) {
+    for (int i = 0; i < rows; i += kLanes<V>) {
+      V* target = reinterpret_cast<V*>(y + i);
+      V sum = *reinterpret_cast<const V*>(L + i) * x[c];
+      sum += *reinterpret_cast<const V*>(L + ld + i) * x[c + 1];
+      V other = *reinterpret_cast<const V*>(L + 2 * ld + i) * x[c + 2];
+      other += *reinterpret_cast<const V*>(L + 3 * ld + i) * x[c + 3];
+      *target = *target - (sum + other);
+    }
+  }
+  for (; c < columns; ++c, L += ld) {
+    for (int i = 0; i < rows; i += kLanes<V>) {
+      V* target = reinterpret_cast<V*>(y + i);
+      *target = *target - *reinterpret_cast<const V*>(L + i) * x[c];
+    }
+  }
+}
+
+template <typename V>
+SIGNORINI_INLINE double sum_of(V v) {
+  double sum = 0.0;
+  for (int i = 0; i < kLanes<V>; ++i) {
+    sum += v[i];
+  }
+  return sum;
+}
+
+/// x_c -= L(:, c) . y for kColumns columns.
+template <typename V, int kColumns>
+SIGNORINI_INLINE void subtract_dots(const double* L, Stride ld, int rows, const double* y,
+                                    double* x) {
+  V sum[kColumns];
+#pragma GCC unroll 4
+  for (int c = 0; c < kColumns; ++c) {
+    sum[c] = V{};
+  }
+  int i = 0;
+  for (; i + kLanes<V> <= rows; i += kLanes<V>) {
+    const V value = *reinterpret_cast<const V*>(y + i);
+#pragma GCC unroll 4
+    for (int c = 0; c < kColumns; ++c) {
+      sum[c] += *reinterpret_cast<const V*>(L + c * ld + i) * value;
+    }
+  }
+#pragma GCC unroll 4
+  for (int c = 0; c < kColumns; ++c) {
+    double rest = sum_of(sum[c]);
+    for (int k = i; k < rows; ++k) {
+      rest += L[c * ld + k] * y[k];
+    }
+    x[c] -= rest;
+  }
+}
+
+template <typename V>
+SIGNORINI_INLINE void forward_substitute(const double* panel, int ld, int rows, int columns,
+                                         double* top, double* below) {
+  const Stride stride = ld;
+  for (int c = 0; c < columns; ++c) {
+    const double* column = panel + c * stride;
+    top[c] /= column[c];
+    for (int r = c + 1; r < columns; ++r) {
+      top[r] -= column[r] * top[c];
+    }
+  }
+  subtract_times<V>(panel + columns, stride, rows - columns, columns, top, below);
+}
+
+template <typename V>
+SIGNORINI_INLINE void back_substitute(const double* panel, int ld, int rows, int columns,
+                                      double* top, const double* below) {
+  const Stride stride = ld;
+  const double* L = panel + columns;
+  int c = 0;
+  for (; c + 4 <= columns; c += 4) {
+    subtract_dots<V, 4>(L + c * stride, stride, rows - columns, below, top + c);
+  }
+  for (; c < columns; ++c) {
+    subtract_dots<V, 1>(L + c * stride, stride, rows - columns, below, top + c);
+  }
+  for (c = columns - 1; c >= 0; --c) {
+    const double* column = panel + c * stride;
+    double value = top[c];
+    for (int r = c + 1; r < columns; ++r) {
+      value -= column[r] * top[r];
+    }
+    top[c] = value / column[c];
+  }
+}
+
+// The four functions of a set, compiled for it. kVectors x kColumns tiles fill its registers.
+#define SIGNORINI_KERNELS(set, attribute, V, kVectors, kColumns)                                 \
+  attribute bool factor_##set(double* panel, int ld, int rows, int columns) {                    \
+    return factor_panel<V, kVectors, kColumns>(panel, ld, rows, columns);                        \
+  }                                                                                              \
+  attribute void subtract_product_##set(double* square, int ld_square, const double* below,      \
+                                        int ld, int size, int columns) {                         \
+    subtract_square<V, kVectors, kColumns>(square, ld_square, below, ld, size, columns);         \
+  }                                                                                              \
+  attribute void forward_##set(const double* panel, int ld, int rows, int columns, double* top,  \
+                               double* below) {                                                  \
+    forward_substitute<V>(panel, ld, rows, columns, top, below);                                 \
+  }                                                                                              \
+  attribute void backward_##set(const double* panel, int ld, int rows, int columns, double* top, \
+                                const double* below) {                                           \
+    back_substitute<V>(panel, ld, rows, columns, top, below);                                    \
+  }                                                                                              \
+  constexpr DenseKernels k_##set = {#set, factor_##set, subtract_product_##set, forward_##set,   \
+                                    backward_##set};
+
+SIGNORINI_KERNELS(baseline, , Two, 2, 4)
+
+#if defined(__x86_64__)
+SIGNORINI_KERNELS(avx2, [[gnu::target("avx2,fma")]], Four, 3, 4)
+SIGNORINI_KERNELS(avx512, [[gnu::target("avx512f,avx512dq,avx512vl,fma")]], Eight, 3, 8)
+#endif
+
+struct Supported {
+  std::array<DenseKernels, 3> sets;
+  std::size_t count = 0;
+};
+
+Supported find_supported() {
+  Supported supported;
+#if defined(__x86_64__)
+  __builtin_cpu_init();
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("fma")) {
+    supported.sets[supported.count++] = k_avx512;
+  }
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
+    supported.sets[supported.count++] = k_avx2;
+  }
+#endif
+  supported.sets[supported.count++] = k_baseline;
+  return supported;
+}
+
+}  // namespace
+
+std::span<const DenseKernels> dense_kernels() {
+  static const Supported supported = find_supported();
+  return {supported.sets.data(), supported.count};
+}
+
+}  // namespace signorini::lcp

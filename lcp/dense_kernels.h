@@ -1,0 +1,36 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace signorini::lcp {
+
+/// The dense inner loops of a sparse Cholesky factorisation, for one instruction set.
+///
+/// A panel holds the first `columns` columns of a symmetric matrix with `rows` rows: column-major,
+/// lower trapezoid, leading dimension ld >= rows, a multiple of kPadding. What lies above the
+/// diagonal and below row `rows` is scratch, read and written: panels need kPadding numbers of
+/// memory behind them.
+struct DenseKernels {
+  static constexpr int kPadding = 8;
+
+  std::string_view name;  ///< "avx512", "avx2" or "baseline"
+  /// panel <- L of its Cholesky factorisation, the rows below included (L_21 = A_21 L_11^-T).
+  /// @return false if a pivot is not a positive finite number; the panel is then of no use
+  bool (*factor)(double* panel, int ld, int rows, int columns);
+  /// The lower triangle of square (size x size, leading dimension ld_square, a multiple of
+  /// kPadding) -= B B^T, B: the last `size` rows of a panel, starting at `below`.
+  void (*subtract_product)(double* square, int ld_square, const double* below, int ld, int size,
+                           int columns);
+  /// Forward substitution with a panel: top <- L_11^-1 top, below <- below - L_21 top. `below`
+  /// needs kPadding numbers of memory behind it.
+  void (*forward)(const double* panel, int ld, int rows, int columns, double* top, double* below);
+  /// Back substitution: top <- L_11^-T (top - L_21^T below).
+  void (*backward)(const double* panel, int ld, int rows, int columns, double* top,
+                   const double* below);
+};
+
+/// The sets this machine can run, the fastest first. The choice changes rounding, not accuracy.
+[[nodiscard]] std::span<const DenseKernels> dense_kernels();
+
+}  // namespace signorini::lcp
