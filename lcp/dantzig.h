@@ -28,10 +28,10 @@ struct DantzigSettings : SolverSettings {
 ///     w = M z + q,   lower <= z <= upper,   w_i >= 0 at lower_i, <= 0 at upper_i, 0 in between.
 ///
 /// (Cottle, Pang, Stone, The Linear Complementarity Problem, 2009, Algorithm 4.2.11 with bounds;
-/// Baraff, Fast contact force computation for nonpenetrating rigid bodies, 1994.) The most violated
-/// row is driven: its z_i moves with the w of the basic rows C kept at 0, until w_i = 0 (i enters
-/// C), z_i meets a bound, a basic z_j meets one (j leaves C) or a good w_j becomes 0 (j enters).
-/// What is good stays good.
+/// Baraff, Fast contact force computation for nonpenetrating rigid bodies, 1994.) The row with the
+/// largest w_i^2 over its Schur complement (where that is at hand; else w_i^2) is driven: its z_i
+/// moves with the w of the basic rows C kept at 0, until w_i = 0 (i enters C), z_i meets a bound, a
+/// basic z_j meets one (j leaves C) or a good w_j becomes 0 (j enters). What is good stays good.
 ///
 /// It departs from Baraff's in this:
 /// - redundant rows are part of the method, not of its failures. A driven row that depends on C
@@ -78,6 +78,7 @@ class Dantzig : public Solver {
     int row;
     double step;
     double bound;  // of z_row, where a basic z meets one
+    double rate;   // |rate| of the basic variable that blocks
   };
 
   bool start(const Problem& problem, const Vector* warm_start);
@@ -92,7 +93,9 @@ class Dantzig : public Solver {
   bool exchange(int row);
   bool leave(int row, double bound);
   [[nodiscard]] bool depends(int row);
-  [[nodiscard]] Event first_block(int row, double direction, bool dependent) const;
+  [[nodiscard]] double way(int row, double rate, double& bound) const;
+  [[nodiscard]] Event first_block(int row, double direction, bool dependent);
+  [[nodiscard]] double weight(int row, double amount) const;
   [[nodiscard]] int most_violated() const;
   [[nodiscard]] double violation(int row) const;
   [[nodiscard]] bool meets_limits(const Problem& problem) const;
@@ -104,10 +107,11 @@ class Dantzig : public Solver {
   PrincipalFactor factor_;
   PrincipalBasis* basis_ = nullptr;
 
-  std::vector<double> z_;         // scaled; within or at the bounds
-  std::vector<double> w_;         // scaled
-  std::vector<double> rate_;      // of the basic variables
-  std::vector<double> work_;      // n numbers
+  std::vector<double> z_;     // scaled; within or at the bounds
+  std::vector<double> w_;     // scaled
+  std::vector<double> rate_;  // of the basic variables
+  std::vector<double> work_;  // n numbers
+  std::vector<Event> blocks_;
   std::vector<double> ray_work_;  // n numbers
   std::vector<double> slack_w_;   // violations of w below this count as rounding
   std::vector<double> slack_z_;   // of z

@@ -23,6 +23,8 @@ class PrincipalBasis {
   /// j in C), n numbers. rate[j] is the Schur complement M_jj - M_jC M_CC^-1 M_Cj, which is 0 where
   /// row j depends on C, or (M_CC^-1)_jj; if it is 0 so is the rate of all w.
   virtual void column(int j, double* rate) = 0;
+  /// column(j)[j] where it is at hand, else 1.
+  [[nodiscard]] virtual double pivot(int j) const = 0;
   /// Moves j into C or out of it; column(j)[j] must be > 0. @return false if M_CC has no factor
   /// L D L^T with D > 0 afterwards, not even anew: M is not semidefinite, or C was dependent.
   [[nodiscard]] virtual bool exchange(int j) = 0;

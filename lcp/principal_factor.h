@@ -23,6 +23,7 @@ class PrincipalFactor : public PrincipalBasis {
   /// @param problem in sparse form
   void reset(const SymmetricLcp& problem) override;
   void column(int j, double* rate) override;
+  [[nodiscard]] double pivot(int /*j*/) const override { return 1.0; }
   [[nodiscard]] bool exchange(int j) override;
   void solve(double* x) override;
   [[nodiscard]] bool refactor() override;

@@ -17,6 +17,10 @@ class PrincipalTableau : public PrincipalBasis {
  public:
   void reset(const SymmetricLcp& problem) override;
   void column(int j, double* rate) override;
+  [[nodiscard]] double pivot(int j) const override {
+    const double own = table_[static_cast<std::size_t>(j) * (n_ + 1)];
+    return member_[j] != 0 ? -own : own;
+  }
   [[nodiscard]] bool exchange(int j) override;
   void solve(double* x) override;
   [[nodiscard]] bool refactor() override;

@@ -108,9 +108,10 @@ class SymmetricLcp {
 template <typename Scalar>
 void SymmetricLcp::add_column(int j, Scalar factor, Scalar* out) const {
   if (is_dense_) {
-    const double* column = dense_column(j);
+    const double* __restrict column = dense_column(j);
+    Scalar* __restrict sum = out;
     for (int i = 0; i < n_; ++i) {
-      out[i] += factor * Scalar(column[i]);
+      sum[i] += factor * Scalar(column[i]);
     }
     return;
   }
