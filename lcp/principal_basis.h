@@ -28,6 +28,9 @@ class PrincipalBasis {
   /// Moves j into C or out of it; column(j)[j] must be > 0. @return false if M_CC has no factor
   /// L D L^T with D > 0 afterwards, not even anew: M is not semidefinite, or C was dependent.
   [[nodiscard]] virtual bool exchange(int j) = 0;
+  /// Makes C the wanted rows, without those that depend on the ones before them (pivots of at most
+  /// `least_pivot`, M scaled to M_ii near 1). @return how many C has
+  virtual int load(const std::vector<char>& wanted, double least_pivot) = 0;
   /// x_C = M_CC^-1 x_C; the other entries are neither read nor written.
   virtual void solve(double* x) = 0;
   /// Forms the transform of the present C anew. @return false if M_CC has no factor.

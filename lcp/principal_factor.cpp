@@ -2,6 +2,7 @@
 
 #include <Eigen/OrderingMethods>
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace signorini::lcp {
@@ -78,17 +79,26 @@ void PrincipalFactor::eliminate() {
 }
 
 bool PrincipalFactor::refactor() {
+  factor(-std::numeric_limits<double>::infinity());
+  return regular_;
+}
+
+int PrincipalFactor::load(const std::vector<char>& wanted, double least_pivot) {
+  member_.assign(wanted.begin(), wanted.end());
+  factor(least_pivot);
+  return static_cast<int>(std::count(member_.begin(), member_.end(), 1));
+}
+
+/// L D L^T of C, row by row; rows with a pivot of at most least_pivot leave C.
+void PrincipalFactor::factor(double least_pivot) {
   ++factorizations_;
   updates_ = 0;
   regular_ = true;
   for (int k = 0; k < n_; ++k) {
-    active_[k] = member_[row_of_[k]];
-  }
-  for (int k = 0; k < n_; ++k) {
-    const bool active = active_[k] != 0;
-    double pivot = 1.0;
-    if (active) {
-      const int row = row_of_[k];
+    const int row = row_of_[k];
+    active_[k] = member_[row];
+    double pivot = 0.0;
+    if (active_[k] != 0) {
       for (int e = problem_->begin(row); e < problem_->end(row); ++e) {
         const int i = place_of_[problem_->row(e)];
         if (i <= k && active_[i] != 0) {
@@ -103,20 +113,24 @@ bool PrincipalFactor::refactor() {
       const double y = x_[j];
       x_[j] = 0.0;
       const int own = row_entry_[r];
-      if (y == 0.0) {
-        value_[own] = 0.0;
-        continue;
+      value_[own] = 0.0;
+      if (y != 0.0) {
+        for (int e = column_start_[j]; e < own; ++e) {
+          x_[column_row_[e]] -= value_[e] * y;
+        }
+        value_[own] = y / diagonal_[j];
+        pivot -= value_[own] * y;
       }
-      for (int e = column_start_[j]; e < own; ++e) {
-        x_[column_row_[e]] -= value_[e] * y;
-      }
-      value_[own] = y / diagonal_[j];
-      pivot -= value_[own] * y;
     }
-    regular_ = regular_ && pivot > 0.0;
-    diagonal_[k] = pivot;
+    if (active_[k] != 0 && !(pivot > least_pivot)) {
+      member_[row] = active_[k] = 0;
+      for (int r = row_start_[k]; r < row_start_[k + 1]; ++r) {
+        value_[row_entry_[r]] = 0.0;
+      }
+    }
+    regular_ = regular_ && (active_[k] == 0 || pivot > 0.0);
+    diagonal_[k] = active_[k] != 0 ? pivot : 1.0;
   }
-  return regular_;
 }
 
 bool PrincipalFactor::exchange(int j) {

@@ -25,6 +25,7 @@ class PrincipalFactor : public PrincipalBasis {
   void column(int j, double* rate) override;
   [[nodiscard]] double pivot(int /*j*/) const override { return 1.0; }
   [[nodiscard]] bool exchange(int j) override;
+  int load(const std::vector<char>& wanted, double least_pivot) override;
   void solve(double* x) override;
   [[nodiscard]] bool refactor() override;
   [[nodiscard]] int factorizations() const override { return factorizations_; }
@@ -35,6 +36,7 @@ class PrincipalFactor : public PrincipalBasis {
  private:
   void analyse();
   void eliminate();
+  void factor(double least_pivot);
   void add(int k);
   void remove(int k);
   void update(int k, double alpha);

@@ -37,10 +37,10 @@ void PrincipalTableau::reset(const SymmetricLcp& problem) {
   column_.resize(n_);
   right_.resize(n_);
   table_.resize(static_cast<std::size_t>(n_) * n_);
-  load();
+  copy();
 }
 
-void PrincipalTableau::load() {
+void PrincipalTableau::copy() {
   for (int j = 0; j < n_; ++j) {
     if (problem_->is_dense()) {
       std::copy(problem_->dense_column(j) + j, problem_->dense_column(j) + n_, at(j) + j);
@@ -110,31 +110,43 @@ void PrincipalTableau::solve(double* x) {
   }
 }
 
-/// The sweeps of the whole of C again, largest pivot first.
-bool PrincipalTableau::refactor() {
+/// Sweeps members_ in, largest pivot first. @return how many stayed out
+int PrincipalTableau::sweep_members(double least_pivot) {
   ++factorizations_;
-  members_.clear();
-  for (int i = 0; i < n_; ++i) {
-    if (member_[i] != 0) {
-      members_.push_back(i);
-      member_[i] = 0;
-    }
-  }
-  load();
+  std::fill(member_.begin(), member_.end(), 0);
+  copy();
   while (!members_.empty()) {
     const auto best = std::max_element(members_.begin(), members_.end(),
                                        [this](int a, int b) { return at(a)[a] < at(b)[b]; });
     const int j = *best;
-    if (!(at(j)[j] > 0.0)) {
-      return false;
+    if (!(at(j)[j] > least_pivot) || !exchange(j)) {
+      break;
     }
     *best = members_.back();
     members_.pop_back();
-    if (!exchange(j)) {
-      return false;
+  }
+  return static_cast<int>(members_.size());
+}
+
+bool PrincipalTableau::refactor() {
+  members_.clear();
+  for (int i = 0; i < n_; ++i) {
+    if (member_[i] != 0) {
+      members_.push_back(i);
     }
   }
-  return true;
+  return sweep_members(0.0) == 0;
+}
+
+int PrincipalTableau::load(const std::vector<char>& wanted, double least_pivot) {
+  members_.clear();
+  for (int i = 0; i < n_; ++i) {
+    if (wanted[i] != 0) {
+      members_.push_back(i);
+    }
+  }
+  const int count = static_cast<int>(members_.size());
+  return count - sweep_members(least_pivot);
 }
 
 }  // namespace signorini::lcp

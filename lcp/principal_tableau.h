@@ -22,13 +22,15 @@ class PrincipalTableau : public PrincipalBasis {
     return member_[j] != 0 ? -own : own;
   }
   [[nodiscard]] bool exchange(int j) override;
+  int load(const std::vector<char>& wanted, double least_pivot) override;
   void solve(double* x) override;
   [[nodiscard]] bool refactor() override;
   [[nodiscard]] int factorizations() const override { return factorizations_; }
 
  private:
   double* at(int j) { return table_.data() + static_cast<std::size_t>(j) * n_; }
-  void load();
+  void copy();
+  int sweep_members(double least_pivot);
 
   const SymmetricLcp* problem_ = nullptr;
   int n_ = 0;

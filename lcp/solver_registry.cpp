@@ -4,6 +4,7 @@
 #include <signorini/lcp/lemke.h>
 #include <signorini/lcp/pgs.h>
 #include <signorini/lcp/solver.h>
+#include <signorini/lcp/structured_lemke.h>
 
 #include <array>
 #include <stdexcept>
@@ -30,6 +31,7 @@ std::unique_ptr<Solver> make(const SolverSettings& settings) {
 
 constexpr std::array kEntries = {
     Entry{"lemke", &make<Lemke, LemkeSettings>},
+    Entry{"structured-lemke", &make<StructuredLemke, StructuredLemkeSettings>},
     Entry{"interior-point", &make<InteriorPoint, InteriorPointSettings>},
     Entry{"apgd", &make<Apgd, ApgdSettings>},
     Entry{"dantzig", &make<Dantzig, DantzigSettings>},

@@ -177,10 +177,12 @@ void SymmetricLcp::copy(const FactoredMatrix& A) {
 }
 
 void SymmetricLcp::scale_matrix() {
+  diagonal_.assign(n_, 0.0);
   if (is_dense_) {
     for (int i = 0; i < n_; ++i) {
       const double d = dense_column(i)[i];
       scale_[i] = d > 0.0 ? root_scale(d) : 1.0;
+      diagonal_[i] = d * scale_[i] * scale_[i];
     }
     for (int j = 0; j < n_; ++j) {
       double* column = dense_.data() + static_cast<std::size_t>(j) * n_;
@@ -192,8 +194,9 @@ void SymmetricLcp::scale_matrix() {
   }
   for (int j = 0; j < n_; ++j) {
     for (int k = start_[j]; k < start_[j + 1]; ++k) {
-      if (row_[k] == j && value_[k] > 0.0) {
-        scale_[j] = root_scale(value_[k]);
+      if (row_[k] == j) {
+        scale_[j] = value_[k] > 0.0 ? root_scale(value_[k]) : 1.0;
+        diagonal_[j] = value_[k] * scale_[j] * scale_[j];
       }
     }
   }
@@ -232,21 +235,6 @@ bool SymmetricLcp::scale_vectors(const Problem& problem) {
 void SymmetricLcp::set_bounds(int i, double lower, double upper) {
   lower_[i] = scale_z(i, lower);
   upper_[i] = scale_z(i, upper);
-}
-
-double SymmetricLcp::dot_column(int j, const double* u) const {
-  double sum = 0.0;
-  if (is_dense_) {
-    const double* column = dense_column(j);
-    for (int i = 0; i < n_; ++i) {
-      sum += column[i] * u[i];
-    }
-    return sum;
-  }
-  for (int k = start_[j]; k < start_[j + 1]; ++k) {
-    sum += value_[k] * u[row_[k]];
-  }
-  return sum;
 }
 
 }  // namespace signorini::lcp

@@ -66,8 +66,7 @@ class SymmetricLcp {
   /// out += factor M'_j
   template <typename Scalar>
   void add_column(int j, Scalar factor, Scalar* out) const;
-  /// M'_j . u
-  [[nodiscard]] double dot_column(int j, const double* u) const;
+  [[nodiscard]] double diagonal(int j) const { return diagonal_[j]; }
 
   /// S_i and t.
   [[nodiscard]] double scale(int i) const { return scale_[i]; }
@@ -91,6 +90,7 @@ class SymmetricLcp {
   std::vector<int> start_;
   std::vector<int> row_;
   std::vector<double> value_;
+  std::vector<double> diagonal_;
   std::vector<double> q_;
   std::vector<double> lower_;
   std::vector<double> upper_;

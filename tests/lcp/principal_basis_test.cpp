@@ -133,6 +133,23 @@ TYPED_TEST(PrincipalBases, ADependentRowShowsInItsColumn) {
   EXPECT_NEAR(rate[5], -1.0, 1e-14);
 }
 
+/// Four contacts a face, three of them independent: loading all rows leaves a regular basis.
+TYPED_TEST(PrincipalBases, LoadLeavesDependentRowsOut) {
+  SymmetricLcp lcp;
+  ASSERT_TRUE(lcp.assign(bench::make_family({.family = "tower4", .size = 50})));
+  TypeParam basis;
+  basis.reset(lcp);
+  const std::vector<char> all(lcp.size(), 1);
+  EXPECT_EQ(basis.load(all, 1e-9), 150);
+  Vector rate(lcp.size());
+  for (int j = 0; j < lcp.size(); ++j) {
+    if (!basis.contains(j)) {
+      basis.column(j, rate.data());
+      EXPECT_NEAR(rate[j], 0.0, 1e-9);
+    }
+  }
+}
+
 TEST(PrincipalFactor, AnIndefiniteMatrixIsRefused) {
   SparseMatrix M(200, 200);
   M.setIdentity();

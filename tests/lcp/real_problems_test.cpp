@@ -228,7 +228,7 @@ TEST_P(PgsSolves, CertifiedAndWithTheWOfLemke) {
 INSTANTIATE_TEST_SUITE_P(RealProblems, PgsSolves,
                          testing::ValuesIn(all_folders(kMaxRows, kMaxGeneratedRows)), test_name);
 
-const Reasons kDantzigFailures = {
+const Reasons kIndefiniteTriangle = {
     {"RockPile_tob1-normal",
      "M is symmetric to 3e-3 only, and the triangle that is pivoted on is indefinite"},
 };
@@ -237,10 +237,20 @@ class DantzigSolves : public testing::TestWithParam<Folder> {};
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(DantzigSolves);
 
 TEST_P(DantzigSolves, CertifiedAndWithTheWOfLemke) {
-  expect_the_w_of_lemke("dantzig", kDantzigFailures, GetParam());
+  expect_the_w_of_lemke("dantzig", kIndefiniteTriangle, GetParam());
 }
 
 INSTANTIATE_TEST_SUITE_P(RealProblems, DantzigSolves,
+                         testing::ValuesIn(all_folders(kMaxRows, kMaxGeneratedRows)), test_name);
+
+class StructuredLemkeSolves : public testing::TestWithParam<Folder> {};
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(StructuredLemkeSolves);
+
+TEST_P(StructuredLemkeSolves, CertifiedAndWithTheWOfLemke) {
+  expect_the_w_of_lemke("structured-lemke", kIndefiniteTriangle, GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(RealProblems, StructuredLemkeSolves,
                          testing::ValuesIn(all_folders(kMaxRows, kMaxGeneratedRows)), test_name);
 
 }  // namespace
