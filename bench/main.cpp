@@ -96,14 +96,15 @@ int run(int argc, char** argv) {
   add_study(app, "impacts", "Random multi-contact impacts: the kinetic energy each law gains",
             "impacts", impacts);
   const PeersCommand peers(app);
+  const BulletSetsCommand bullet_sets(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kBadUsage;
   }
-  if (peers.is_asked()) {
+  if (peers.is_asked() || bullet_sets.is_asked()) {
     pin_libraries_to_one_thread(argv);
-    return peers.run();
+    return peers.is_asked() ? peers.run() : bullet_sets.run();
   }
   return exactness_command->parsed() ? run_exactness(exactness) : run_impacts(impacts);
 }

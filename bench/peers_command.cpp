@@ -7,6 +7,10 @@
 #include "bench/peers_study.h"
 #include "bench/peers_table.h"
 
+#ifdef SIGNORINI_PEER_BULLET
+#include "bench/bullet_sets.h"
+#endif
+
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <filesystem>
@@ -185,6 +189,64 @@ int PeersCommand::run() const {
     return kInterrupted;
   }
   return result.wrong_of_ours() == 0 ? kClaimsHold : kWrongClaim;
+}
+
+#ifdef SIGNORINI_PEER_BULLET
+struct BulletSetsCommand::Options {
+  BulletSetsOptions study;
+  std::string out;
+};
+#else
+struct BulletSetsCommand::Options {};
+#endif
+
+BulletSetsCommand::BulletSetsCommand(CLI::App& app) : options_(std::make_unique<Options>()) {
+  command_ = app.add_subcommand(
+      "bullet-sets", "Our solvers and Bullet's on contact sets captured from Bullet's own steps");
+#ifdef SIGNORINI_PEER_BULLET
+  Options& o = *options_;
+  command_->add_option("--sets", o.study.sets, "Which")->delimiter(',')->capture_default_str();
+  command_->add_option("--repeats", o.study.repeats, "Of every solve; the fastest counts")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command_->add_option("--tolerance", o.study.tolerance, "Asked of our solvers")
+      ->check(CLI::Range(1e-15, 0.9))
+      ->capture_default_str();
+  command_->add_option("--out", o.out,
+                       "Folder for bullet-sets.csv, made if absent (default: print only)");
+#endif
+}
+
+BulletSetsCommand::~BulletSetsCommand() = default;
+
+bool BulletSetsCommand::is_asked() const {
+  return command_->parsed();
+}
+
+int BulletSetsCommand::run() const {
+#ifdef SIGNORINI_PEER_BULLET
+  const Options& o = *options_;
+  if (!o.out.empty()) {
+    std::filesystem::create_directories(o.out);
+  }
+  const StopOnInterrupt stop;
+  const bool is_watched = ::isatty(STDERR_FILENO) != 0;
+  const auto runs = run_bullet_sets(o.study, is_watched ? &std::cerr : nullptr);
+  fmt::print("{}", bullet_sets_text(runs));
+  fmt::print(
+      "max|min(f, d'+ + target)| in m/s, in long double, of the impulses that were left / the "
+      "fastest call in us.\nOurs includes reading Bullet's contacts, assembly, certificate and "
+      "writing back; Bullet's its own setup and (idle) friction rows.\n");
+  if (!o.out.empty()) {
+    const std::filesystem::path file = std::filesystem::path(o.out) / "bullet-sets.csv";
+    lcp::write_whole_file(file, bullet_sets_csv(runs));
+    fmt::print("written: {}\n", file.string());
+  }
+  return children_are_stopped() ? kInterrupted : kClaimsHold;
+#else
+  fmt::print(stderr, "signorini-bench bullet-sets: this build has no Bullet (libbullet-dev)\n");
+  return 70;
+#endif
 }
 
 }  // namespace signorini::bench

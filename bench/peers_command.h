@@ -21,4 +21,19 @@ class PeersCommand {
   CLI::App* command_;
 };
 
+/// The command `signorini-bench bullet-sets`. In a build without Bullet it says so.
+class BulletSetsCommand {
+ public:
+  explicit BulletSetsCommand(CLI::App& app);
+  ~BulletSetsCommand();
+  [[nodiscard]] bool is_asked() const;
+  /// @return the exit code: 0, 70 without Bullet, 130 if interrupted.
+  [[nodiscard]] int run() const;
+
+ private:
+  struct Options;
+  std::unique_ptr<Options> options_;
+  CLI::App* command_;
+};
+
 }  // namespace signorini::bench

@@ -56,6 +56,16 @@ TEST_F(BenchProgram, PeersWritesTableProfileAndCsv) {
   EXPECT_EQ(run("peers /no/such/folder"), 70);
 }
 
+TEST_F(BenchProgram, BulletSetsWritesItsCsvOrSaysThatThereIsNoBullet) {
+  const int code = run("bullet-sets --sets stack10 --repeats 1 --out '" + folder_.string() + "'");
+#ifdef SIGNORINI_HAS_BULLET
+  EXPECT_EQ(code, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "bullet-sets.csv"));
+#else
+  EXPECT_NE(code, 0);
+#endif
+}
+
 #ifdef SIGNORINI_HAS_GMP
 TEST_F(BenchProgram, ExactnessWritesItsCsvAndNothingElse) {
   EXPECT_EQ(run("exactness --problems 40 --seed 5 --out '" + folder_.string() + "'"), 0);

@@ -1,0 +1,388 @@
+#include "bench/bullet_sets.h"
+
+#include <signorini/lcp/solver.h>
+
+#include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
+#include <BulletDynamics/ConstraintSolver/btNNCGConstraintSolver.h>
+#include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
+#include <BulletDynamics/MLCPSolvers/btLemkeSolver.h>
+#include <BulletDynamics/MLCPSolvers/btMLCPSolver.h>
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <fmt/format.h>
+#include <functional>
+#include <limits>
+#include <map>
+#include <ostream>
+#include <random>
+#include <stdexcept>
+
+namespace signorini::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kTimeStep = 1.0 / 60.0;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// The numbers of a run that a child sends home; plain bytes.
+struct Report {
+  double residual = -1.0;
+  double scaled_residual = -1.0;
+  double seconds = std::numeric_limits<double>::infinity();
+  double solve_seconds = -1.0;
+  int negative_impulses = 0;
+  char outcome[64] = "ok";
+
+  void set_outcome(std::string_view text) {
+    const std::size_t count = std::min(text.size(), sizeof outcome - 1);
+    std::memcpy(outcome, text.data(), count);
+    outcome[count] = '\0';
+  }
+};
+
+/// Judges the impulses that were left in the points, in long double, whoever wrote them.
+void judge(const BulletContacts& contacts, const NormalRows& rows, Report& report) {
+  const lcp::Vector f = written_impulses(contacts);
+  lcp::Problem problem;
+  problem.M = rows.A;
+  problem.q = rows.d_dot + contacts.allowance;
+  const lcp::Index n = problem.size();
+  std::vector<long double> z(n);
+  std::vector<long double> w(n);
+  for (lcp::Index i = 0; i < n; ++i) {
+    z[i] = f[i];
+  }
+  lcp::multiply(problem.M, z.data(), w.data());
+  lcp::Vector diagonal;
+  lcp::diagonal(problem.M, diagonal);
+  long double residual = 0.0L;
+  long double scaled = 0.0L;
+  for (lcp::Index i = 0; i < n; ++i) {
+    const long double target = w[i] + problem.q[i];
+    const auto worse = [](long double most, long double one) {
+      const long double size = one < 0 ? -one : one;
+      return size <= most ? most : size;  // NaN wins
+    };
+    residual = worse(residual, std::min(z[i], target));
+    scaled = worse(scaled, std::min(diagonal[i] * z[i], target));
+    report.negative_impulses += z[i] < 0.0L ? 1 : 0;
+  }
+  report.residual = static_cast<double>(residual);
+  report.scaled_residual = static_cast<double>(scaled);
+}
+
+/// A contestant: what it does to the group counts, from the state on to the written impulses.
+struct Solver {
+  std::string name;
+  /// Prepares once, then returns the call that is timed.
+  std::function<std::function<void(Report&)>(const BulletGroup&)> make;
+};
+
+Solver bullet_solver(const std::string& name, int iterations,
+                     std::function<std::shared_ptr<btConstraintSolver>()> make) {
+  return {name, [iterations, make](const BulletGroup& group) -> std::function<void(Report&)> {
+            btContactSolverInfo info = *group.info;
+            info.m_numIterations = iterations;
+            std::shared_ptr<btConstraintSolver> solver = make();
+            return [&group, info, solver](Report&) { group.solve(*solver, info); };
+          }};
+}
+
+/// btMLCPSolver falls back to sequential impulses without a word.
+template <typename Inner>
+Solver bullet_mlcp(const std::string& name) {
+  return {name, [](const BulletGroup& group) -> std::function<void(Report&)> {
+            struct Both {
+              Inner inner;
+              btMLCPSolver outer{&inner};
+            };
+            auto both = std::make_shared<Both>();
+            return [&group, both](Report& report) {
+              both->outer.setNumFallbacks(0);
+              group.solve(both->outer, *group.info);
+              report.set_outcome(both->outer.getNumFallbacks() > 0 ? "fallback" : "ok");
+            };
+          }};
+}
+
+/// One of ours: reads Bullet's contacts, assembles, solves, writes velocities and impulses back.
+Solver our_solver(std::string_view name, double tolerance) {
+  return {std::string(name),
+          [name, tolerance](const BulletGroup& group) -> std::function<void(Report&)> {
+            struct Workspace {
+              std::unique_ptr<lcp::Solver> solver;
+              BulletContacts contacts;
+              NormalRows rows;
+              lcp::Problem problem;
+              lcp::Result result;
+            };
+            auto work = std::make_shared<Workspace>();
+            work->solver = lcp::make_solver(name, {.tolerance = tolerance});
+            return [&group, work](Report& report) {
+              Workspace& w = *work;
+              w.contacts.read(group);
+              assemble_normals(w.contacts.bodies, w.contacts.free_state, w.contacts.contacts,
+                               w.rows);
+              w.problem.q = w.rows.d_dot + w.contacts.allowance;
+              w.problem.M = w.rows.A;
+              const Clock::time_point start = Clock::now();
+              w.solver->solve(w.problem, w.result);
+              report.solve_seconds = seconds_since(start);
+              write_solution(group, w.contacts, w.result.z);
+              report.set_outcome(lcp::to_string(w.result.status));
+            };
+          }};
+}
+
+std::vector<Solver> all_solvers(const BulletGroup& group, double tolerance) {
+  std::vector<Solver> solvers;
+  for (const int iterations : {10, 50, 200, 1000}) {
+    solvers.push_back(bullet_solver(fmt::format("Bullet SI{}", iterations), iterations, [] {
+      return std::make_shared<btSequentialImpulseConstraintSolver>();
+    }));
+  }
+  solvers.push_back(bullet_solver("Bullet NNCG200", 200,
+                                  [] { return std::make_shared<btNNCGConstraintSolver>(); }));
+  solvers.push_back(bullet_mlcp<btDantzigSolver>("Bullet Dantzig"));
+  solvers.push_back(bullet_mlcp<btLemkeSolver>("Bullet Lemke"));
+  BulletContacts contacts;
+  contacts.read(group);
+  NormalRows rows;
+  assemble_normals(contacts.bodies, contacts.free_state, contacts.contacts, rows);
+  lcp::Problem problem;
+  problem.q = rows.d_dot + contacts.allowance;
+  problem.M = std::move(rows.A);
+  for (const std::string_view name : lcp::solver_names()) {
+    if (name != "exact" && lcp::make_solver(name)->refuses(problem).empty()) {
+      solvers.push_back(our_solver(name, tolerance));
+    }
+  }
+  return solvers;
+}
+
+std::string run_in_this_process(const Solver& solver, const BulletGroup& group,
+                                const BulletState& start, int repeats) {
+  Report report;
+  const auto call = solver.make(group);
+  for (int i = 0; i < repeats; ++i) {
+    start.restore(group);
+    forget_impulses(group);
+    Report once;
+    const Clock::time_point begin = Clock::now();
+    call(once);
+    once.seconds = seconds_since(begin);
+    if (once.seconds < report.seconds) {
+      report = once;
+    }
+  }
+  // The problem is that of the state before the solve; the impulses are those that it left.
+  BulletContacts contacts;
+  const BulletState solved(group);
+  start.restore(group);
+  contacts.read(group);
+  NormalRows rows;
+  assemble_normals(contacts.bodies, contacts.free_state, contacts.contacts, rows);
+  solved.restore(group);
+  judge(contacts, rows, report);
+  return {reinterpret_cast<const char*>(&report), sizeof report};
+}
+
+BulletSetRun to_run(const ChildAnswer& child) {
+  BulletSetRun run;
+  if (child.end != ChildEnd::kAnswered) {
+    run.outcome.assign(1, child.end == ChildEnd::kTimedOut ? 'T' : 'C');
+    return run;
+  }
+  Report report;
+  std::memcpy(&report, child.answer.data(), sizeof report);
+  run.outcome = report.outcome;
+  run.residual = report.residual;
+  run.scaled_residual = report.scaled_residual;
+  run.seconds = report.seconds;
+  run.solve_seconds = report.solve_seconds;
+  run.negative_impulses = report.negative_impulses;
+  return run;
+}
+
+}  // namespace
+
+struct BulletScene::Parts {
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher{&configuration};
+  btDbvtBroadphase broadphase;
+  CapturingSolver solver;
+  btDiscreteDynamicsWorld world{&dispatcher, &broadphase, &solver, &configuration};
+  btBoxShape ground{btVector3(100.0, 100.0, 100.0)};
+  btBoxShape cube{btVector3(0.5, 0.5, 0.5)};
+  btSphereShape sphere{0.5};
+  std::vector<std::unique_ptr<btRigidBody>> bodies;
+  int steps = 0;
+};
+
+std::vector<std::string> BulletScene::names() {
+  return {"stack10", "stack30", "spheres125", "pyramid10"};
+}
+
+void BulletScene::add_body(btCollisionShape& shape, double mass, const btVector3& centre) {
+  btVector3 inertia(0.0, 0.0, 0.0);
+  if (mass > 0.0) {
+    shape.calculateLocalInertia(mass, inertia);
+  }
+  btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, &shape, inertia);
+  info.m_startWorldTransform.setOrigin(centre);
+  info.m_friction = 0.0;
+  auto body = std::make_unique<btRigidBody>(info);
+  body->setActivationState(DISABLE_DEACTIVATION);
+  parts_->world.addRigidBody(body.get());
+  parts_->bodies.push_back(std::move(body));
+}
+
+BulletScene::BulletScene(const std::string& name) : parts_(std::make_unique<Parts>()) {
+  Parts& parts = *parts_;
+  parts.world.setGravity(btVector3(0.0, 0.0, -9.81));
+  parts.world.getSimulationIslandManager()->setSplitIslands(false);
+  add_body(parts.ground, 0.0, btVector3(0.0, 0.0, -100.0));
+  if (name == "stack10" || name == "stack30") {
+    for (int i = 0; i < (name == "stack10" ? 10 : 30); ++i) {
+      add_body(parts.cube, 1.0, btVector3(0.0, 0.0, 0.5 + i));
+    }
+    parts.steps = 10;
+  } else if (name == "pyramid10") {
+    for (int row = 0; row < 10; ++row) {
+      for (int j = 0; j < 10 - row; ++j) {
+        // Bricks a hair apart, so that each touches the row below alone.
+        add_body(parts.cube, 1.0, btVector3(1.05 * (j + 0.5 * row), 0.0, 0.5 + row));
+      }
+    }
+    parts.steps = 10;
+  } else if (name == "spheres125") {
+    std::mt19937_64 random(1);
+    std::uniform_real_distribution<double> jitter(-0.02, 0.02);
+    for (int i = 0; i < 125; ++i) {
+      const double x = i % 5 + jitter(random);
+      const double y = (i / 5) % 5 + jitter(random);
+      add_body(parts.sphere, 1.0, btVector3(x, y, 0.6 + 1.0 * (i / 25) + 0.3 * jitter(random)));
+    }
+    parts.steps = 20;
+  } else {
+    std::string known;
+    for (const std::string& one : names()) {
+      known.append(" ").append(one);
+    }
+    throw std::invalid_argument("Bullet set: must be one of" + known + ", got " + name);
+  }
+}
+
+BulletScene::~BulletScene() {
+  for (const auto& body : parts_->bodies) {
+    parts_->world.removeRigidBody(body.get());
+  }
+}
+
+void BulletScene::visit(const CapturingSolver::Visitor& visitor) {
+  for (int step = 0; step < parts_->steps; ++step) {
+    parts_->world.stepSimulation(kTimeStep, 0);
+  }
+  parts_->solver.set_visitor([&](const BulletGroup& group) {
+    if (group.manifold_count > 0) {  // Bullet also solves the group of what touches nothing
+      visitor(group);
+    }
+  });
+  parts_->world.stepSimulation(kTimeStep, 0);
+  parts_->solver.set_visitor(nullptr);
+}
+
+std::vector<BulletSetRun> run_bullet_sets(const BulletSetsOptions& options,
+                                          std::ostream* progress) {
+  std::vector<BulletSetRun> runs;
+  for (const std::string& set : options.sets) {
+    BulletScene scene(set);
+    scene.visit([&](const BulletGroup& group) {
+      const BulletState start(group);
+      BulletContacts contacts;
+      contacts.read(group);
+      for (const Solver& solver : all_solvers(group, options.tolerance)) {
+        if (children_are_stopped()) {
+          return;
+        }
+        if (progress != nullptr) {
+          *progress << fmt::format("\r\033[K{} ({} contacts): {}", set, contacts.points.size(),
+                                   solver.name)
+                    << std::flush;
+        }
+        BulletSetRun run = to_run(run_in_child(
+            [&](const std::function<void()>& loaded) {
+              loaded();
+              return run_in_this_process(solver, group, start, options.repeats);
+            },
+            options.limits));
+        run.set = set;
+        run.n = static_cast<int>(contacts.points.size());
+        run.solver = solver.name;
+        runs.push_back(std::move(run));
+      }
+    });
+  }
+  if (progress != nullptr) {
+    *progress << "\r\033[K" << std::flush;
+  }
+  return runs;
+}
+
+std::string bullet_sets_csv(const std::vector<BulletSetRun>& runs) {
+  std::string csv =
+      "set,n,solver,outcome,residual,scaled_residual,negative_impulses,seconds,solve_seconds\n";
+  for (const BulletSetRun& run : runs) {
+    csv += fmt::format("{},{},{},{},{:.3e},{:.3e},{},{:.4g},{}\n", run.set, run.n, run.solver,
+                       run.outcome, run.residual, run.scaled_residual, run.negative_impulses,
+                       run.seconds,
+                       run.solve_seconds < 0.0 ? "" : fmt::format("{:.4g}", run.solve_seconds));
+  }
+  return csv;
+}
+
+std::string bullet_sets_text(const std::vector<BulletSetRun>& runs) {
+  std::vector<std::string> sets;
+  std::vector<std::string> solvers;
+  std::map<std::pair<std::string, std::string>, const BulletSetRun*> cells;
+  const auto add_once = [](std::vector<std::string>& all, const std::string& one) {
+    if (std::find(all.begin(), all.end(), one) == all.end()) {
+      all.push_back(one);
+    }
+  };
+  for (const BulletSetRun& run : runs) {
+    add_once(sets, fmt::format("{}, n={}", run.set, run.n));
+    add_once(solvers, run.solver);
+    cells[{run.solver, sets.back()}] = &run;
+  }
+  std::string text = fmt::format("{:<18}", "m/s / us");
+  for (const std::string& set : sets) {
+    text += fmt::format("{:>24}", set);
+  }
+  text += "\n";
+  for (const std::string& solver : solvers) {
+    text += fmt::format("{:<18}", solver);
+    for (const std::string& set : sets) {
+      const auto found = cells.find({solver, set});
+      std::string cell;
+      if (found != cells.end() && found->second->seconds < 0.0) {
+        cell = found->second->outcome;
+      } else if (found != cells.end()) {
+        const BulletSetRun& run = *found->second;
+        const bool is_plain = run.outcome == "ok" || run.outcome == "solved";
+        cell = fmt::format("{}{:.0e} / {:.0f}", is_plain ? "" : fmt::format("{} ", run.outcome),
+                           run.residual, 1e6 * run.seconds);
+      }
+      text += fmt::format("{:>24}", cell);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace signorini::bench
