@@ -16,11 +16,11 @@ double BestIterate::merit(const Certificate& certificate) {
 void BestIterate::reset(const Problem& problem) {
   problem_ = &problem;
   z_.setZero(problem.size());
-  certificate_ = certify(problem, z_);
+  certificate_ = certifier_.certify(problem, z_);
 }
 
 Certificate BestIterate::offer(const VectorRef& z) {
-  const Certificate certificate = certify(*problem_, z);
+  const Certificate certificate = certifier_.certify(*problem_, z);
   if (z.allFinite() && merit(certificate) < merit(certificate_)) {
     z_ = z;
     certificate_ = certificate;

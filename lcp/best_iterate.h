@@ -26,6 +26,7 @@ class BestIterate {
   const Problem* problem_ = nullptr;
   Vector z_;
   Certificate certificate_;
+  Certifier certifier_;
 };
 
 }  // namespace signorini::lcp

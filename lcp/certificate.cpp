@@ -1,7 +1,7 @@
 #include <signorini/lcp/certificate.h>
 #include <signorini/lcp/friction_cone.h>
+#include <signorini/lcp/group_scale.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,21 +24,6 @@ Certificate refuse() {
   certificate.natural_floor = 0.0;
   certificate.backward_error = kInfinity;
   return certificate;
-}
-
-/// The largest eigenvalue of the symmetric part of a d x d block, or 1 if it is not positive.
-double largest_eigenvalue(const Eigen::Matrix3d& block, int d) {
-  double most = 0.0;
-  if (d == 2) {
-    const double half_difference = 0.5 * (block(0, 0) - block(1, 1));
-    const double off = 0.5 * block(0, 1) + 0.5 * block(1, 0);
-    most = 0.5 * (block(0, 0) + block(1, 1)) + std::hypot(half_difference, off);
-  } else {
-    const Eigen::Matrix3d symmetric = 0.5 * block + 0.5 * block.transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(symmetric, Eigen::EigenvaluesOnly);
-    most = solver.eigenvalues()[2];
-  }
-  return most > 0.0 ? most : 1.0;
 }
 
 /// Fills z's row norms |M||z| (added to size), the diagonal and the blocks of the cones.

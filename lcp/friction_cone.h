@@ -22,7 +22,9 @@ void project_on_cone(Scalar mu, int dimension, const Scalar* x, Scalar* p) {
   const Scalar normal = x[0];
   const Scalar tangential = tangential_norm(dimension, x);
   if (tangential <= mu * normal) {  // in K
-    std::copy(x, x + dimension, p);
+    for (int k = 0; k < dimension; ++k) {
+      p[k] = x[k];
+    }
     return;
   }
   const Scalar along = (normal + mu * tangential) / (1 + mu * mu);  // p_N of the boundary

@@ -1,7 +1,9 @@
 #include <signorini/lcp/number_text.h>
 #include <signorini/lcp/problem.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 
@@ -82,27 +84,39 @@ std::string bad_bound(const Problem& problem) {
   return {};
 }
 
-/// Cones lie within the problem and share no row with one another or with a coupled limit.
+std::string cone_at(const FrictionCone& cone) {
+  return "cones: at row " + std::to_string(cone.normal_row);
+}
+
+/// Cones lie within the problem, ascend, and share no row with one another.
 void check_cones(const Problem& problem) {
-  std::vector<bool> used(problem.size(), false);
-  for (const CoupledLimit& limit : problem.limits) {
-    used[limit.row] = used[limit.normal_row] = true;
-  }
+  Index free_from = 0;
   for (const FrictionCone& cone : problem.cones) {
-    const std::string which = "cones: at row " + std::to_string(cone.normal_row);
     if (cone.dimension != 2 && cone.dimension != 3) {
-      fail(which + ": dimension must be 2 or 3, got " + std::to_string(cone.dimension));
+      fail(cone_at(cone) + ": dimension must be 2 or 3, got " + std::to_string(cone.dimension));
     }
-    if (cone.normal_row < 0 || cone.normal_row + Index{cone.dimension} > problem.size()) {
-      fail(which + ": " + std::to_string(cone.dimension) + " rows do not fit a problem of " +
-           std::to_string(problem.size()) + " rows");
+    if (cone.normal_row < free_from) {
+      fail(cone_at(cone) + ": cones must ascend and share no row; the one before ends at row " +
+           std::to_string(free_from - 1));
     }
-    for (int k = 0; k < cone.dimension; ++k) {
-      if (used[cone.normal_row + k]) {
-        fail(which + ": row " + std::to_string(cone.normal_row + k) +
-             " belongs to another cone or coupled limit");
+    free_from = Index{cone.normal_row} + cone.dimension;
+    if (free_from > problem.size()) {
+      fail(cone_at(cone) + ": " + std::to_string(cone.dimension) +
+           " rows do not fit a problem of " + std::to_string(problem.size()) + " rows");
+    }
+  }
+}
+
+/// The rows of coupled limits lie outside of the cones (checked and ascending).
+void check_limits_beside_cones(const Problem& problem) {
+  for (const CoupledLimit& limit : problem.limits) {
+    for (const int row : {limit.row, limit.normal_row}) {
+      const auto after =
+          std::ranges::upper_bound(problem.cones, row, {}, &FrictionCone::normal_row);
+      if (after != problem.cones.begin() &&
+          row < std::prev(after)->normal_row + std::prev(after)->dimension) {
+        fail("limits: row " + std::to_string(row) + " belongs to a cone");
       }
-      used[cone.normal_row + k] = true;
     }
   }
 }
@@ -149,9 +163,8 @@ void check_shapes(const Problem& problem) {
            std::to_string(limit.normal_row) + " in a problem of " + std::to_string(n) + " rows");
     }
   }
-  if (!problem.cones.empty()) {
-    check_cones(problem);
-  }
+  check_cones(problem);
+  check_limits_beside_cones(problem);
 }
 
 std::string find_bad_value(const Problem& problem) {

@@ -60,7 +60,7 @@ struct Problem {
   Vector lower;                          ///< n, or empty: all 0
   Vector upper;                          ///< n, or empty: all +inf
   std::vector<CoupledLimit> limits;      ///< friction rows; overrides lower and upper of its row
-  std::vector<FrictionCone> cones = {};  ///< disjoint; overrides lower and upper of its rows
+  std::vector<FrictionCone> cones = {};  ///< ascending, disjoint; overrides lower and upper
   FrictionLaw friction_law = FrictionLaw::kCoulomb;  ///< of all cones
 
   [[nodiscard]] Index size() const { return q.size(); }

@@ -1,3 +1,4 @@
+#include <signorini/lcp/alart_curnier.h>
 #include <signorini/lcp/apgd.h>
 #include <signorini/lcp/dantzig.h>
 #include <signorini/lcp/interior_point.h>
@@ -35,6 +36,7 @@ constexpr std::array kEntries = {
     Entry{"interior-point", &make<InteriorPoint, InteriorPointSettings>},
     Entry{"apgd", &make<Apgd, ApgdSettings>},
     Entry{"dantzig", &make<Dantzig, DantzigSettings>},
+    Entry{"alart-curnier", &make<AlartCurnier, AlartCurnierSettings>},
     Entry{"pgs", &make<Pgs, PgsSettings>},
 #ifdef SIGNORINI_HAS_GMP
     Entry{"exact", &make<ExactLemke, ExactLemkeSettings>},

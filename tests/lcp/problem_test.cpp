@@ -96,13 +96,13 @@ INSTANTIATE_TEST_SUITE_P(
               [](Problem& p) {
                 p.cones = {{0, 2, 0.5}, {1, 2, 0.5}};
               },
-              "row 1 belongs to another"},
+              "at row 1: cones must ascend and share no row; the one before ends at row 1"},
         Wrong{"ConeOnACoupledLimit",
               [](Problem& p) {
                 p.cones = {{1, 2, 0.5}};
                 p.limits = {{2, 0, 0.5}};
               },
-              "row 2 belongs to another"},
+              "row 2 belongs to a cone"},
         Wrong{"LimitOnItself",
               [](Problem& p) {
                 p.limits = {{1, 1, 0.5}};

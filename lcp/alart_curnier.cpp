@@ -1,0 +1,212 @@
+#include <signorini/lcp/alart_curnier.h>
+#include <signorini/lcp/best_iterate.h>
+#include <signorini/lcp/group_scale.h>
+#include <signorini/lcp/newton_system.h>
+#include <signorini/lcp/number_text.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace signorini::lcp {
+namespace {
+
+constexpr double kSmallestAlpha = 1e-12;
+constexpr double kLargestAlpha = 1e3;
+constexpr int kFewSteps = 12;  // of an inner iteration that went well
+
+}  // namespace
+
+class AlartCurnier::Workspace {
+ public:
+  Status solve(const Problem& problem, const AlartCurnierSettings& settings,
+               const Vector* warm_start, const Deadline& deadline, Result& result);
+
+ private:
+  struct Inner {
+    bool converged;
+    int steps;
+  };
+  void scale(const Problem& problem);
+  Inner newton(const AlartCurnierSettings& settings, double alpha, double tolerance);
+  double evaluate(double alpha, const Vector& x);
+  [[nodiscard]] bool solved() const {
+    return is_solved(judge(best_.certificate(), tolerance_, Status::kStalled));
+  }
+  [[nodiscard]] bool exhausted() const {
+    return *factorizations_ >= most_steps_ || deadline_->passed();
+  }
+  double error_of(const Vector& x);
+
+  const Deadline* deadline_ = nullptr;
+  int* factorizations_ = nullptr;
+  int most_steps_ = 0;
+  double tolerance_ = 0.0;
+  Vector scale_, b_;  // s of a row; the scaled q
+  double unit_ = 1.0;
+  double rho_ = 1.0;
+  SparseMatrix W_;  // scaled
+  AlartCurnierFunction function_;
+  NewtonSystem system_;
+  BestIterate best_;
+  Vector x_, anchor_, trial_, u_, F_, dx_, z_, least_x_;
+  std::vector<AlartCurnierFunction::Block> A_, B_;
+  std::vector<AlartCurnierFunction::Coupling> couplings_;
+};
+
+void AlartCurnier::Workspace::scale(const Problem& problem) {
+  group_scale(problem, scale_);
+  if (const auto* factored = std::get_if<FactoredMatrix>(&problem.M)) {
+    W_ = factored->form();
+  } else if (const auto* dense = std::get_if<Matrix>(&problem.M)) {
+    W_ = dense->sparseView();
+  } else {
+    W_ = std::get<SparseMatrix>(problem.M);
+  }
+  for (int j = 0; j < W_.outerSize(); ++j) {
+    for (SparseMatrix::InnerIterator it(W_, j); it; ++it) {
+      it.valueRef() *= scale_[it.row()] * scale_[j];
+    }
+  }
+  b_ = scale_.cwiseProduct(problem.q);
+  unit_ = b_.cwiseAbs().maxCoeff();
+  unit_ = unit_ > 0.0 ? unit_ : 1.0;
+  b_ /= unit_;
+  function_.set(problem, scale_, unit_);
+  system_.set(W_, function_);
+}
+
+double AlartCurnier::Workspace::error_of(const Vector& x) {
+  z_ = unit_ * scale_.cwiseProduct(x);
+  return BestIterate::merit(best_.offer(z_));
+}
+
+/// F_ at x. @return |F|.
+double AlartCurnier::Workspace::evaluate(double alpha, const Vector& x) {
+  u_.noalias() = W_ * x;
+  u_ += b_ + alpha * (x - anchor_);
+  function_.evaluate(x, u_, rho_, F_);
+  return F_.norm();
+}
+
+/// Newton from x_, whose u_ and F_ it leaves at the best point it saw.
+AlartCurnier::Workspace::Inner AlartCurnier::Workspace::newton(const AlartCurnierSettings& settings,
+                                                               double alpha, double tolerance) {
+  constexpr double kSmallestStep = 0.1;
+  constexpr double kArmijo = 1e-4;
+  std::array<double, 12> recent{};
+  double size = evaluate(alpha, x_);
+  recent.fill(size);
+  double least = size;
+  least_x_ = x_;
+  int step = 0;
+  for (; step < settings.inner_steps && !exhausted(); ++step) {
+    if (F_.cwiseAbs().maxCoeff() <= tolerance) {
+      return {true, step};
+    }
+    function_.differentiate(x_, u_, rho_, A_, B_, couplings_);
+    ++*factorizations_;
+    if (!system_.solve(A_, B_, couplings_, alpha, F_, dx_)) {
+      break;
+    }
+    const double reference = *std::max_element(recent.begin(), recent.end());
+    double t = 1.0;
+    for (;; t *= 0.5) {
+      trial_ = x_ + t * dx_;
+      size = evaluate(alpha, trial_);
+      if (size <= (1.0 - kArmijo * t) * reference || t < kSmallestStep) {
+        break;
+      }
+    }
+    if (!std::isfinite(size)) {
+      break;
+    }
+    x_.swap(trial_);
+    recent[step % recent.size()] = size;
+    if (size < least) {
+      least = size;
+      least_x_ = x_;
+    }
+  }
+  x_ = least_x_;
+  evaluate(alpha, x_);
+  return {F_.cwiseAbs().maxCoeff() <= tolerance, step};
+}
+
+Status AlartCurnier::Workspace::solve(const Problem& problem, const AlartCurnierSettings& settings,
+                                      const Vector* warm_start, const Deadline& deadline,
+                                      Result& result) {
+  result.statistics = {.iterations = 0, .factorizations = 0};
+  deadline_ = &deadline;
+  factorizations_ = &result.statistics.factorizations;
+  most_steps_ =
+      settings.max_iterations >= 0 ? settings.max_iterations : AlartCurnierSettings::kDefaultSteps;
+  tolerance_ = settings.tolerance;
+  best_.reset(problem);
+  scale(problem);
+  x_.setZero(problem.size());
+  if (warm_start != nullptr) {
+    x_ = warm_start->cwiseQuotient(scale_) / unit_;
+  }
+  double alpha = settings.proximal;
+  double error = error_of(x_);
+  int stalled = 0;
+  rho_ = 1.0;
+  while (!solved() && !exhausted()) {
+    anchor_ = x_;
+    const double tolerance = std::max(1e-13, 1e-3 * std::min(1.0, error));
+    const Inner inner = newton(settings, alpha, tolerance);
+    ++result.statistics.iterations;
+    const double after = error_of(x_);
+    const bool good = inner.converged || F_.cwiseAbs().maxCoeff() <= std::max(1e-12, 0.1 * error);
+    if (good) {
+      alpha = std::max(alpha * (inner.steps < kFewSteps ? 0.3 : 0.5), kSmallestAlpha);
+      error = after;
+      stalled = 0;
+      continue;
+    }
+    if (after > error) {
+      x_ = anchor_;
+    }
+    error = std::min(error, after);
+    if (alpha >= kLargestAlpha && ++stalled > 3) {
+      result.z = best_.z();
+      return Status::kStalled;
+    }
+    alpha = std::min(3.0 * alpha, kLargestAlpha);
+  }
+  result.z = best_.z();
+  return deadline.passed() ? Status::kTimeLimit
+                           : (solved() ? Status::kStalled : Status::kIterationLimit);
+}
+
+void AlartCurnierSettings::validate() const {
+  SolverSettings::validate();
+  if (!(proximal > 0.0) || !std::isfinite(proximal)) {
+    throw std::invalid_argument("settings: proximal: must be > 0, got " + number_text(proximal));
+  }
+  if (inner_steps < 1) {
+    throw std::invalid_argument("settings: inner_steps: must be >= 1, got " +
+                                std::to_string(inner_steps));
+  }
+}
+
+AlartCurnier::AlartCurnier(const AlartCurnierSettings& settings)
+    : settings_(settings), workspace_(std::make_unique<Workspace>()) {
+  settings_.validate();
+}
+
+AlartCurnier::~AlartCurnier() = default;
+
+std::string AlartCurnier::refuses(const Problem&) const {
+  return {};
+}
+
+Status AlartCurnier::iterate(const Problem& problem, const Vector* warm_start,
+                             const Deadline& deadline, Result& result) {
+  return workspace_->solve(problem, settings_, warm_start, deadline, result);
+}
+
+}  // namespace signorini::lcp

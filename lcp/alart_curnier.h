@@ -1,0 +1,63 @@
+#pragma once
+
+#include <signorini/lcp/solver.h>
+
+#include <memory>
+
+namespace signorini::lcp {
+
+/// Settings of AlartCurnier. Lengths are those of the scaled problem: dimensionless.
+struct AlartCurnierSettings : SolverSettings {
+  /// Newton steps when max_iterations is -1; each is one factorisation.
+  static constexpr int kDefaultSteps = 4000;
+
+  /// The first proximal weight alpha, > 0: large makes the Newton systems well conditioned and the
+  /// outer iteration slow. It follows the inner iterations from there.
+  double proximal = 0.1;
+  /// Newton steps of one proximal problem, >= 1, before alpha is raised.
+  int inner_steps = 70;
+
+  /// @throws std::invalid_argument that names the setting, its value and the bound.
+  void validate() const;
+};
+
+/// Proximal-point regularised Alart-Curnier Newton: exact Coulomb friction, and every other row of
+/// problem.h (bounds, free rows, coupled limits, associated cones), for any M.
+///
+/// In unknowns scaled so that every diagonal block of M has the largest eigenvalue 1, with F of
+/// AlartCurnierFunction,
+///
+///     x_k+1: F(x, W x + b + alpha_k (x - x_k)) = 0,
+///
+/// each found by a semismooth Newton method with a nonmonotone line search on |F| (Alart, Curnier
+/// 1991; proximal form: Acary, Bremond, Huber, On solving contact problems with Coulomb friction,
+/// 2018, section 5.2). Redundant contacts, for which plain Newton has a singular matrix, only make
+/// alpha matter. alpha falls while the inner iterations are few and rises when they fail.
+///
+/// No solution is promised: Coulomb's problem may have none, and the proximal iteration is known to
+/// converge only where W is monotone on the cones. Statuses beside solved: kIterationLimit,
+/// kTimeLimit, kStalled (alpha at its largest and no progress); z is the best iterate by
+/// certificate.
+/// Cost: one sparse LU a Newton step (dense up to NewtonSystem::kDenseRows active rows);
+/// statistics: iterations are proximal steps, factorizations Newton steps.
+class AlartCurnier : public Solver {
+ public:
+  /// @throws std::invalid_argument for a setting out of its range.
+  explicit AlartCurnier(const AlartCurnierSettings& settings = {});
+  ~AlartCurnier() override;
+
+  [[nodiscard]] std::string_view name() const override { return "alart-curnier"; }
+  [[nodiscard]] std::string refuses(const Problem& problem) const override;
+
+ protected:
+  const SolverSettings& settings() const override { return settings_; }
+  Status iterate(const Problem& problem, const Vector* warm_start, const Deadline& deadline,
+                 Result& result) override;
+
+ private:
+  class Workspace;
+  AlartCurnierSettings settings_;
+  std::unique_ptr<Workspace> workspace_;
+};
+
+}  // namespace signorini::lcp

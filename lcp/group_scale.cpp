@@ -1,0 +1,76 @@
+#include <signorini/lcp/group_scale.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+namespace signorini::lcp {
+namespace {
+
+/// The block of M at `first`, d x d.
+Eigen::Matrix3d block_of(const Matrix& M, int first, int d) {
+  Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
+  block.topLeftCorner(d, d) = M.block(first, first, d, d);
+  return block;
+}
+
+Eigen::Matrix3d block_of(const SparseMatrix& M, int first, int d) {
+  Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
+  for (int j = 0; j < d; ++j) {
+    for (int i = 0; i < d; ++i) {
+      block(i, j) = M.coeff(first + i, first + j);
+    }
+  }
+  return block;
+}
+
+Eigen::Matrix3d block_of(const FactoredMatrix& M, int first, int d) {
+  Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
+  Vector moved;
+  for (int i = 0; i < d; ++i) {
+    block(i, i) = M.compliance(first + i);
+    for (const FactoredMatrix::Entry& a : M.entries(first + i)) {
+      const int size = M.mass.dimension(a.block);
+      moved.resize(size);
+      M.mass.apply_inverse(a.block, M.values(a), moved.data());
+      for (int j = 0; j < d; ++j) {
+        for (const FactoredMatrix::Entry& b : M.entries(first + j)) {
+          if (a.block == b.block) {
+            block(i, j) += moved.dot(Eigen::Map<const Vector>(M.values(b), size));
+          }
+        }
+      }
+    }
+  }
+  return block;
+}
+
+}  // namespace
+
+double largest_eigenvalue(const Eigen::Matrix3d& block, int d) {
+  double most = 0.0;
+  if (d == 2) {
+    const double half_difference = 0.5 * (block(0, 0) - block(1, 1));
+    const double off = 0.5 * block(0, 1) + 0.5 * block(1, 0);
+    most = 0.5 * (block(0, 0) + block(1, 1)) + std::hypot(half_difference, off);
+  } else {
+    const Eigen::Matrix3d symmetric = 0.5 * block + 0.5 * block.transpose();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(symmetric, Eigen::EigenvaluesOnly);
+    most = solver.eigenvalues()[2];
+  }
+  return most > 0.0 ? most : 1.0;
+}
+
+void group_scale(const Problem& problem, Vector& s) {
+  diagonal(problem.M, s);
+  for (double& value : s) {
+    value = value > 0.0 ? 1.0 / std::sqrt(value) : 1.0;
+  }
+  for (const FrictionCone& cone : problem.cones) {
+    const Eigen::Matrix3d block = std::visit(
+        [&cone](const auto& M) { return block_of(M, cone.normal_row, cone.dimension); }, problem.M);
+    s.segment(cone.normal_row, cone.dimension)
+        .setConstant(1.0 / std::sqrt(largest_eigenvalue(block, cone.dimension)));
+  }
+}
+
+}  // namespace signorini::lcp

@@ -1,0 +1,149 @@
+#include <signorini/lcp/newton_system.h>
+
+#include <algorithm>
+
+namespace signorini::lcp {
+
+using Block = AlartCurnierFunction::Block;
+using Coupling = AlartCurnierFunction::Coupling;
+
+void NewtonSystem::set(const SparseMatrix& W, const AlartCurnierFunction& function) {
+  W_ = &W;
+  function_ = &function;
+  const std::size_t n = static_cast<std::size_t>(W.rows());
+  active_row_.resize(n);
+  couplings_of_column_.resize(n);
+  column_.assign(function.groups().size(), Eigen::Vector3d::Zero());
+  is_in_column_.assign(function.groups().size(), 0);
+}
+
+void NewtonSystem::find_active(const std::vector<Block>& B,
+                               const std::vector<Coupling>& couplings) {
+  const auto& groups = function_->groups();
+  group_is_active_.assign(groups.size(), 0);
+  for (auto& list : couplings_of_column_) {
+    list.clear();
+  }
+  for (const Coupling& coupling : couplings) {
+    group_is_active_[function_->group_of(coupling.row)] = 1;
+    couplings_of_column_[coupling.column].emplace_back(coupling.row, coupling.value);
+  }
+  active_rows_.clear();
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (!B[g].isZero(0.0)) {
+      group_is_active_[g] = 1;
+    }
+    for (int k = 0; k < groups[g].dimension; ++k) {
+      const int row = groups[g].first + k;
+      active_row_[row] = group_is_active_[g] != 0 ? static_cast<int>(active_rows_.size()) : -1;
+      if (group_is_active_[g] != 0) {
+        active_rows_.push_back(row);
+      }
+    }
+  }
+}
+
+/// The active columns as a sparse matrix; the others times dx go to the right-hand side.
+void NewtonSystem::assemble(const std::vector<Block>& A, const std::vector<Block>& B, double alpha,
+                            const Vector& dx) {
+  const auto& groups = function_->groups();
+  const auto touch = [this](int g) {
+    if (is_in_column_[g] == 0) {
+      is_in_column_[g] = 1;
+      groups_in_column_.push_back(g);
+      column_[g].setZero();
+    }
+  };
+  outer_.assign(1, 0);
+  inner_.clear();
+  values_.clear();
+  for (int j = 0; j < W_->cols(); ++j) {
+    const bool is_active = active_row_[j] >= 0;
+    if (!is_active && dx[j] == 0.0) {
+      continue;
+    }
+    groups_in_column_.clear();
+    for (SparseMatrix::InnerIterator it(*W_, j); it; ++it) {
+      const int i = static_cast<int>(it.row());
+      const int g = function_->group_of(i);
+      if (active_row_[i] >= 0) {
+        touch(g);
+        column_[g] += it.value() * B[g].col(i - groups[g].first);
+      }
+    }
+    const int own = function_->group_of(j);
+    if (is_active) {
+      touch(own);
+      const int k = j - groups[own].first;
+      column_[own] += A[own].col(k) + alpha * B[own].col(k);
+    }
+    for (const auto& [row, value] : couplings_of_column_[j]) {
+      const int g = function_->group_of(row);
+      touch(g);
+      column_[g][row - groups[g].first] += value;
+    }
+    std::sort(groups_in_column_.begin(), groups_in_column_.end());
+    for (const int g : groups_in_column_) {
+      is_in_column_[g] = 0;
+      for (int k = 0; k < groups[g].dimension; ++k) {
+        const int row = active_row_[groups[g].first + k];
+        const double value = column_[g][k];
+        if (!is_active) {
+          right_[row] -= value * dx[j];
+        } else if (value != 0.0) {
+          inner_.push_back(row);
+          values_.push_back(value);
+        }
+      }
+    }
+    if (is_active) {
+      outer_.push_back(static_cast<int>(inner_.size()));
+    }
+  }
+}
+
+bool NewtonSystem::factor_and_solve() {
+  const int n = static_cast<int>(active_rows_.size());
+  if (n <= kDenseRows) {
+    double* dense = dense_lu_.reset(n);
+    for (int j = 0; j < n; ++j) {
+      for (int k = outer_[j]; k < outer_[j + 1]; ++k) {
+        dense[static_cast<std::size_t>(j) * n + inner_[k]] = values_[k];
+      }
+    }
+    return dense_lu_.solve(right_.data());
+  }
+  const Eigen::Map<const SparseMatrix> matrix(n, n, static_cast<Index>(values_.size()),
+                                              outer_.data(), inner_.data(), values_.data());
+  sparse_lu_.compute(matrix);
+  if (sparse_lu_.info() != Eigen::Success) {
+    return false;
+  }
+  Eigen::Map<Vector> right(right_.data(), n);
+  right = sparse_lu_.solve(right).eval();
+  return true;
+}
+
+bool NewtonSystem::solve(const std::vector<Block>& A, const std::vector<Block>& B,
+                         const std::vector<Coupling>& couplings, double alpha, const Vector& F,
+                         Vector& dx) {
+  find_active(B, couplings);
+  dx = -F;
+  right_.resize(active_rows_.size());
+  for (std::size_t k = 0; k < active_rows_.size(); ++k) {
+    right_[k] = -F[active_rows_[k]];
+  }
+  if (active_rows_.empty()) {
+    return true;
+  }
+  assemble(A, B, alpha, dx);
+  if (!factor_and_solve()) {
+    return false;
+  }
+  for (std::size_t k = 0; k < active_rows_.size(); ++k) {
+    dx[active_rows_[k]] = right_[k];
+  }
+  return dx.allFinite();
+}
+
+}  // namespace signorini::lcp

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <signorini/lcp/alart_curnier_function.h>
+#include <signorini/lcp/dense_lu.h>
+
+#include <Eigen/SparseLU>
+#include <vector>
+
+namespace signorini::lcp {
+
+/// The Newton step of F(x, u) = 0, u = (W + alpha I) x + b, for a given W:
+///
+///     (A + B (W + alpha I)) dx = -F.
+///
+/// Groups with B = 0 are solved by hand; the rest is factored, dense up to kDenseRows rows, sparse
+/// (LU with partial pivoting, Eigen) above.
+class NewtonSystem {
+ public:
+  static constexpr int kDenseRows = 120;
+
+  /// Keeps W. @param function its groups
+  void set(const SparseMatrix& W, const AlartCurnierFunction& function);
+
+  /// @return false if the matrix is singular or the step is not finite; dx is then of no use.
+  [[nodiscard]] bool solve(const std::vector<AlartCurnierFunction::Block>& A,
+                           const std::vector<AlartCurnierFunction::Block>& B,
+                           const std::vector<AlartCurnierFunction::Coupling>& couplings,
+                           double alpha, const Vector& F, Vector& dx);
+
+ private:
+  void find_active(const std::vector<AlartCurnierFunction::Block>& B,
+                   const std::vector<AlartCurnierFunction::Coupling>& couplings);
+  void assemble(const std::vector<AlartCurnierFunction::Block>& A,
+                const std::vector<AlartCurnierFunction::Block>& B, double alpha, const Vector& dx);
+  [[nodiscard]] bool factor_and_solve();
+
+  const SparseMatrix* W_ = nullptr;
+  const AlartCurnierFunction* function_ = nullptr;
+  std::vector<char> group_is_active_;
+  std::vector<int> active_row_;   // of every row, or -1
+  std::vector<int> active_rows_;  // ascending
+  std::vector<std::vector<std::pair<int, double>>> couplings_of_column_;
+  // one column of B (W + alpha I) + A, by group
+  std::vector<Eigen::Vector3d> column_;
+  std::vector<int> groups_in_column_;
+  std::vector<char> is_in_column_;
+  // the active system
+  std::vector<int> outer_, inner_;
+  std::vector<double> values_;
+  std::vector<double> right_;
+  DenseLu dense_lu_;
+  Eigen::SparseLU<SparseMatrix, Eigen::COLAMDOrdering<int>> sparse_lu_;
+};
+
+}  // namespace signorini::lcp
