@@ -307,13 +307,26 @@ SIGNORINI_INLINE void back_substitute(const double* panel, int ld, int rows, int
   for (; c < columns; ++c) {
     subtract_dots<V, 1>(L + c * stride, stride, rows - columns, below, top + c);
   }
-  for (c = columns - 1; c >= 0; --c) {
-    const double* column = panel + c * stride;
-    double value = top[c];
-    for (int r = c + 1; r < columns; ++r) {
-      value -= column[r] * top[r];
+  // The triangle, from its last columns on, four at a time: what is below them first.
+  for (int end = columns; end > 0;) {
+    const int first = end >= 4 ? end - 4 : 0;
+    if (end - first == 4) {
+      subtract_dots<V, 4>(panel + first * stride + end, stride, columns - end, top + end,
+                          top + first);
+    } else {
+      for (c = first; c < end; ++c) {
+        subtract_dots<V, 1>(panel + c * stride + end, stride, columns - end, top + end, top + c);
+      }
     }
-    top[c] = value / column[c];
+    for (c = end - 1; c >= first; --c) {
+      const double* column = panel + c * stride;
+      double value = top[c];
+      for (int r = c + 1; r < end; ++r) {
+        value -= column[r] * top[r];
+      }
+      top[c] = value / column[c];
+    }
+    end = first;
   }
 }
 

@@ -1,6 +1,8 @@
+#include <signorini/lcp/active_set_newton.h>
+#include <signorini/lcp/body_space_system.h>
 #include <signorini/lcp/interior_point.h>
-#include <signorini/lcp/sparse_cholesky.h>
-#include <signorini/lcp/whitened_rows.h>
+#include <signorini/lcp/proximal_newton.h>
+#include <signorini/lcp/scaled_problem.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,298 +15,433 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The largest step in [0, 1] that keeps v + step dv >= 0.
-double step_to_boundary(const Vector& v, const Vector& dv) {
-  double step = 1.0;
-  for (Index i = 0; i < v.size(); ++i) {
-    if (dv[i] < 0.0) {
-      step = std::min(step, -v[i] / dv[i]);
-    }
+/// A slack s >= 0 of one bound of every row and its multiplier y >= 0, s_i y_i -> 0. Rows without
+/// the bound have s = 1, y = 0 and do not move.
+class Barrier {
+ public:
+  void set(const Vector& has_bound) {
+    has_ = has_bound;
+    count_ = has_bound.sum();
   }
-  return step;
-}
+  Vector s, y, ds, dy;
+
+  [[nodiscard]] double count() const { return count_; }
+  [[nodiscard]] const Vector& has() const { return has_; }
+  [[nodiscard]] double gap() const { return s.cwiseProduct(has_).dot(y); }
+  /// The gap after a step.
+  [[nodiscard]] double gap_after(double step) const {
+    double sum = 0.0;
+    for (Index i = 0; i < s.size(); ++i) {
+      sum += has_[i] * (s[i] + step * ds[i]) * (y[i] + step * dy[i]);
+    }
+    return sum;
+  }
+  /// The right-hand side c of s dy + y ds = c: Mehrotra's corrector for the directions at hand.
+  void correct(double target) {
+    c_ = has_.array() * (target - s.array() * y.array() - ds.array() * dy.array());
+  }
+  /// The same without corrector and target.
+  void predict() { c_ = -s.cwiseProduct(y); }
+  [[nodiscard]] const Vector& right_side() const { return c_; }
+  /// The directions for ds.
+  void follow(const Vector& dx, double sign) {
+    ds = sign * has_.cwiseProduct(dx);
+    dy = (c_ - y.cwiseProduct(ds)).cwiseQuotient(s);
+  }
+  /// The largest step in [0, 1] that keeps s and y >= 0.
+  [[nodiscard]] double longest_step() const {
+    double step = 1.0;
+    for (Index i = 0; i < s.size(); ++i) {
+      if (ds[i] < 0.0) {
+        step = std::min(step, -s[i] / ds[i]);
+      }
+      if (dy[i] < 0.0) {
+        step = std::min(step, -y[i] / dy[i]);
+      }
+    }
+    return step;
+  }
+  void move(double step) {
+    s += step * ds;
+    y += step * dy;
+  }
+
+ private:
+  Vector has_, c_;
+  double count_ = 0.0;
+};
 
 }  // namespace
 
-/// The problem in whitened coordinates and everything that changes during a solve.
+/// The problem in scaled coordinates and everything that changes during a solve.
 class InteriorPoint::Workspace {
  public:
   explicit Workspace(const InteriorPointSettings& settings) : settings_(settings) {}
 
   Status solve(const Problem& problem, const Vector* warm_start, const Deadline& deadline,
                Result& result) {
-    problem_ = &problem;
     deadline_ = &deadline;
-    statistics_ = &result.statistics;
-    *statistics_ = {.iterations = 0, .factorizations = 0};
-    rows_.set(std::get<FactoredMatrix>(problem.M));
-    g_ = problem.q.cwiseQuotient(rows_.scale());
-    set_tolerances(problem);
-    d_.setZero(rows_.rows());
-    cholesky_->analyse(rows_.body_space_matrix(d_));
-    best_residual_ = kInfinity;
-    start(warm_start);
-    Status ending = interior_point();
-    polish(ending);
-    result.z = best_x_.cwiseQuotient(rows_.scale());
+    detail_ = &result.detail;
+    body_space_ = std::holds_alternative<FactoredMatrix>(problem.M);
+    if (!body_space_ && given_ == nullptr) {
+      given_ = make_given_matrix_system();
+    }
+    ShiftedSystem& system = body_space_ ? bodies_ : *given_;
+    system.set(problem.M);
+    problem_.set(problem, system);
+    iterations_ = 0;
+    const Status ending = run(warm_start);
+    problem_.best_z(result.z);
+    result.statistics = {.iterations = iterations_, .factorizations = system.factorizations()};
     return ending;
   }
 
  private:
-  void set_tolerances(const Problem& problem);
-  void start(const Vector* warm_start);
-  Status interior_point();
-  [[nodiscard]] bool newton_direction(const Vector& target);
-  void polish(Status& ending);
-  [[nodiscard]] bool proximal_step(Vector& x);
-  void dual_gradient(const Vector& u, Vector& gradient);
-  double line_search(const Vector& direction);
-  double consider(const Vector& x);
+  [[nodiscard]] Status run(const Vector* warm_start);
+  [[nodiscard]] bool start_warm(const Vector& warm_start);
+  void start_cold();
+  void set_barriers();
+  [[nodiscard]] Status interior_point();
+  [[nodiscard]] Status predict_and_correct(double mu);
+  [[nodiscard]] bool newton_direction();
   [[nodiscard]] bool factor();
+  int guess_set();
+  [[nodiscard]] bool cross_over();
+  bool polish(int most_factorizations);
 
   InteriorPointSettings settings_;
-  const Problem* problem_ = nullptr;
   const Deadline* deadline_ = nullptr;
-  Statistics* statistics_ = nullptr;
-  std::unique_ptr<SparseCholesky> cholesky_ = make_sparse_cholesky();
-  WhitenedRows rows_;
-  double natural_scale_ = 1.0;
-  double unit_free_scale_ = 1.0;
+  std::string* detail_ = nullptr;
+  bool body_space_ = false;
+  BodySpaceSystem bodies_;
+  std::unique_ptr<ShiftedSystem> given_;
+  ScaledProblem problem_;
+  ActiveSetNewton active_set_;
+  ProximalNewton proximal_newton_;
+  int iterations_ = 0;
 
-  Vector g_, x_, y_, r_;  // the problem, the iterate, r = A x + g - y
-  Vector d_, h_, u_, dx_, dy_, gdu_;
-  Vector dx_affine_, dy_affine_;
-  Vector best_x_;
-  double best_residual_ = kInfinity;
-  // polish
-  Vector point_, base_slack_, weight_, velocity_, slack_, change_, gradient_, direction_,
-      g_direction_;
-  std::vector<std::pair<double, Index>> breaks_;
+  Vector x_, gradient_, r_;  // r = A x + g - y + v
+  Barrier lower_, upper_;    // x - lower and y, upper - x and v
+  double proximal_ = 0.0;
+  Vector e_, h_, dx_, bound_, trial_;
+  std::vector<RowState> guess_, last_guess_, tried_;
+  int next_crossing_ = 0;
+  int crossing_wait_ = 1;
+  bool polished_early_ = false;
 };
 
-void InteriorPoint::Workspace::set_tolerances(const Problem& problem) {
-  const double q_inf = problem.q.cwiseAbs().maxCoeff();
-  natural_scale_ = 1.0 + q_inf;
-  unit_free_scale_ = q_inf > 0.0 ? q_inf : 1.0;
-}
-
-void InteriorPoint::Workspace::start(const Vector* warm_start) {
-  const Index n = rows_.rows();
-  const double size = std::max(g_.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
+Status InteriorPoint::Workspace::run(const Vector* warm_start) {
+  constexpr int kMostOfLastPolish = 60;
+  set_barriers();
+  tried_.clear();
+  next_crossing_ = 0;
+  crossing_wait_ = 1;
+  polished_early_ = false;
+  guess_.clear();
+  proximal_ = settings_.proximal;
+  x_ = problem_.best();  // zero, or the bound next to it
+  problem_.gradient(x_, gradient_);
+  if (problem_.consider(x_, gradient_) <= settings_.tolerance) {
+    return Status::kStalled;  // solved: the certificate will say so
+  }
+  if (warm_start != nullptr && start_warm(*warm_start)) {
+    return Status::kStalled;
+  }
   if (warm_start == nullptr) {
-    x_ = (-g_).cwiseMax(0.0).array() + 0.1 * size;
-    y_ = g_.cwiseMax(0.1 * size);
-    return;
+    start_cold();
   }
-  x_ = warm_start->cwiseProduct(rows_.scale()).cwiseMax(0.0);
-  consider(x_);
-  rows_.transpose_times(x_, u_);
-  rows_.times(u_, y_);
-  y_ += rows_.compliance().cwiseProduct(x_) + g_;
-  const double rms = std::sqrt(x_.cwiseMin(y_).squaredNorm() / static_cast<double>(n));
-  const double floor = std::max(rms, 1e-10 * size);
-  x_ = x_.cwiseMax(floor);
-  y_ = y_.cwiseMax(floor);
+  const Status ending = interior_point();
+  if (problem_.best_residual() > settings_.tolerance) {
+    polish(kMostOfLastPolish);
+  }
+  return ending;
 }
 
-/// The residuals of x in the certificate's terms, in double: the larger one. Keeps the best
-/// iterate.
-double InteriorPoint::Workspace::consider(const Vector& x) {
-  rows_.transpose_times(x, velocity_);
-  rows_.times(velocity_, slack_);
-  slack_ += rows_.compliance().cwiseProduct(x) + g_;
-  const Vector& s = rows_.scale();
-  double natural = 0.0;
-  double unit_free = 0.0;
-  for (Index i = 0; i < x.size(); ++i) {
-    unit_free = std::max(unit_free, s[i] * std::abs(std::min(x[i], slack_[i])));
-    natural = std::max(natural, std::abs(std::min(x[i] / s[i], s[i] * slack_[i])));
-  }
-  const double worst = std::max(natural / natural_scale_, unit_free / unit_free_scale_);
-  if (!(x.allFinite() && std::isfinite(worst))) {
-    return kInfinity;  // a NaN must never look like a small residual
-  }
-  if (worst < best_residual_) {
-    best_residual_ = worst;
-    best_x_ = x;
-  }
-  return worst;
+/// Which rows have which bound. A row whose bounds are equal has neither: it does not move.
+void InteriorPoint::Workspace::set_barriers() {
+  const auto& l = problem_.lower().array();
+  const auto& u = problem_.upper().array();
+  bound_ = (l > -kInfinity && l < u).cast<double>();
+  lower_.set(bound_);
+  bound_ = (u < kInfinity && l < u).cast<double>();
+  upper_.set(bound_);
 }
 
+void InteriorPoint::Workspace::start_cold() {
+  const Index n = problem_.size();
+  const Vector& g = problem_.g();
+  const double size = std::max(g.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
+  const double margin = 0.1 * size;
+  lower_.s.setOnes(n);
+  lower_.y.setZero(n);
+  upper_.s.setOnes(n);
+  upper_.y.setZero(n);
+  for (Index i = 0; i < n; ++i) {
+    const double l = problem_.lower()[i];
+    const double u = problem_.upper()[i];
+    const bool below = lower_.has()[i] != 0.0;
+    const bool above = upper_.has()[i] != 0.0;
+    if (below && above) {
+      const double inside = std::min(margin, 0.25 * (u - l));
+      x_[i] = std::clamp(-g[i], l + inside, u - inside);
+    } else if (below) {
+      x_[i] = l + std::max(-g[i], 0.0) + margin;
+    } else if (above) {
+      x_[i] = u - std::max(g[i], 0.0) - margin;
+    }
+    if (below) {
+      lower_.s[i] = x_[i] - l;
+      lower_.y[i] = std::max(g[i], margin);
+    }
+    if (above) {
+      upper_.s[i] = u - x_[i];
+      upper_.y[i] = std::max(-g[i], margin);
+    }
+  }
+}
+
+/// Tries the active set of the warm start; if that does not solve the problem, puts the iterate
+/// near it, away from the bounds by the size of its error. @return whether the problem is solved
+bool InteriorPoint::Workspace::start_warm(const Vector& warm_start) {
+  constexpr ActiveSetNewton::Limits kLimits = {.factorizations = 8, .wrong_share = 0.05};
+  const Index n = problem_.size();
+  x_ = warm_start.cwiseProduct(problem_.system().scale())
+           .cwiseMax(problem_.lower())
+           .cwiseMin(problem_.upper());
+  problem_.gradient(x_, gradient_);
+  if (problem_.consider(x_, gradient_) <= settings_.tolerance) {
+    return true;
+  }
+  guess_.resize(n);
+  double sum = 0.0;
+  for (Index i = 0; i < n; ++i) {
+    const double target = x_[i] - gradient_[i];
+    guess_[i] = target <= problem_.lower()[i]   ? RowState::kAtLower
+                : target >= problem_.upper()[i] ? RowState::kAtUpper
+                                                : RowState::kBetween;
+    const double error = x_[i] - std::clamp(target, problem_.lower()[i], problem_.upper()[i]);
+    sum += error * error;
+  }
+  trial_ = x_;
+  if (active_set_.improve(problem_, trial_, guess_, kLimits, settings_.tolerance) <=
+      settings_.tolerance) {
+    return true;
+  }
+  guess_.clear();
+  const double size =
+      std::max(problem_.g().cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
+  const double floor = std::max(std::sqrt(sum / static_cast<double>(n)), 1e-10 * size);
+  lower_.s.setOnes(n);
+  lower_.y.setZero(n);
+  upper_.s.setOnes(n);
+  upper_.y.setZero(n);
+  for (Index i = 0; i < n; ++i) {
+    const double l = problem_.lower()[i];
+    const double u = problem_.upper()[i];
+    const bool below = lower_.has()[i] != 0.0;
+    const bool above = upper_.has()[i] != 0.0;
+    const double inside = below && above ? std::min(floor, 0.25 * (u - l)) : floor;
+    if (below) {
+      x_[i] = std::max(x_[i], l + inside);
+    }
+    if (above) {
+      x_[i] = std::min(x_[i], u - inside);
+    }
+    if (below) {
+      lower_.s[i] = x_[i] - l;
+      lower_.y[i] = std::max(gradient_[i], floor);
+    }
+    if (above) {
+      upper_.s[i] = u - x_[i];
+      upper_.y[i] = std::max(-gradient_[i], floor);
+    }
+  }
+  return false;
+}
+
+/// Factors A + Y/S + V/T + proximal. Where that fails the proximal term grows: it changes the path,
+/// not the answer.
 bool InteriorPoint::Workspace::factor() {
-  ++statistics_->factorizations;
-  return cholesky_->factor(rows_.body_space_matrix(d_));
+  constexpr double kMostProximal = 1e-6;
+  e_ = lower_.y.cwiseQuotient(lower_.s);
+  if (problem_.has_upper()) {
+    e_ += upper_.y.cwiseQuotient(upper_.s);
+    for (Index i = 0; i < e_.size(); ++i) {
+      if (problem_.lower()[i] == problem_.upper()[i]) {
+        e_[i] = kInfinity;
+      }
+    }
+  }
+  while (!problem_.system().factor(e_, proximal_)) {
+    proximal_ = std::max(100.0 * proximal_, 1e-12);
+    if (proximal_ > kMostProximal) {
+      return false;
+    }
+  }
+  return true;
 }
 
-/// dx, dy of (A + Y/X) dx = -r + target / x, y dx + x dy = target, with the factor of H(d_).
-bool InteriorPoint::Workspace::newton_direction(const Vector& target) {
-  h_ = target.cwiseQuotient(x_) - r_;
-  gdu_ = d_.cwiseProduct(h_);
-  rows_.transpose_times(gdu_, u_);
-  cholesky_->solve(u_);
-  rows_.times(u_, gdu_);
-  dx_ = d_.cwiseProduct(h_ - gdu_);
-  dy_ = (target - y_.cwiseProduct(dx_)).cwiseQuotient(x_);
-  return dx_.allFinite() && dy_.allFinite();
+/// dx and the barriers' directions for their right-hand sides, with the factor at hand:
+/// (A + Y/S + V/T) dx = -r + c_l / s - c_u / t.
+bool InteriorPoint::Workspace::newton_direction() {
+  h_ = lower_.right_side().cwiseQuotient(lower_.s) - r_;
+  if (problem_.has_upper()) {
+    h_ -= upper_.right_side().cwiseQuotient(upper_.s);
+  }
+  problem_.system().solve(h_, dx_);
+  lower_.follow(dx_, 1.0);
+  if (problem_.has_upper()) {
+    upper_.follow(dx_, -1.0);
+  }
+  return std::isfinite(dx_.sum()) && std::isfinite(lower_.dy.sum());
+}
+
+/// One step of Mehrotra's predictor-corrector from the iterate with r_ and the given mu.
+/// @return kNumericalBreakdown, or kNotRun if all went well
+Status InteriorPoint::Workspace::predict_and_correct(double mu) {
+  const bool has_upper = problem_.has_upper();
+  if (!factor()) {
+    return Status::kNumericalBreakdown;
+  }
+  lower_.predict();
+  upper_.predict();
+  if (!newton_direction()) {
+    return Status::kNumericalBreakdown;
+  }
+  const double barriers = lower_.count() + upper_.count();
+  const auto longest_step = [&] {
+    return std::min(lower_.longest_step(), has_upper ? upper_.longest_step() : 1.0);
+  };
+  if (barriers > 0.0) {
+    const double affine = longest_step();
+    const double gap = lower_.gap_after(affine) + (has_upper ? upper_.gap_after(affine) : 0.0);
+    const double target = mu * std::pow(std::max(gap / barriers, 0.0) / mu, 3);
+    lower_.correct(target);
+    if (has_upper) {
+      upper_.correct(target);
+    }
+    if (!newton_direction()) {
+      return Status::kNumericalBreakdown;
+    }
+  }
+  const double longest = longest_step();
+  const double step = longest < 1.0 || barriers > 0.0 ? settings_.step_fraction * longest : 1.0;
+  x_ += step * dx_;
+  lower_.move(step);
+  if (has_upper) {
+    upper_.move(step);
+  }
+  return Status::kNotRun;
 }
 
 Status InteriorPoint::Workspace::interior_point() {
-  const double n = static_cast<double>(rows_.rows());
   const int most = settings_.max_iterations >= 0 ? settings_.max_iterations
                                                  : InteriorPointSettings::kDefaultIterations;
-  // The polish gains from any start that is a little better than this.
-  const double good_enough = std::max(settings_.tolerance, 1e-9);
+  const double barriers = lower_.count() + upper_.count();
   double least_mu = kInfinity;
   double least_infeasibility = kInfinity;
   constexpr int kMostWithoutProgress = 25;  // far starts rise before they fall
+  constexpr double kEarlyPolish = 1e-6;
+  constexpr int kMostOfEarlyPolish = 6;
   int without_progress = 0;
-  if (best_x_.size() != x_.size()) {
-    best_x_.setZero(x_.size());
-  }
-  consider(Vector::Zero(x_.size()));
-  for (;; ++statistics_->iterations) {
-    const double residual = consider(x_);
-    if (best_residual_ <= good_enough && residual <= good_enough) {
-      return Status::kSolved;
+  for (;; ++iterations_) {
+    problem_.gradient(x_, gradient_);
+    const double residual = problem_.consider(x_, gradient_);
+    // Beyond this the polish is the better way to the last digits.
+    if (residual <= std::max(settings_.tolerance, 1e-10) || cross_over()) {
+      return Status::kStalled;  // the certificate will say what it is
     }
-    if (statistics_->iterations == most) {
+    if (residual <= kEarlyPolish && !polished_early_) {
+      polished_early_ = true;
+      if (polish(kMostOfEarlyPolish)) {
+        return Status::kStalled;
+      }
+    }
+    if (iterations_ == most) {
       return Status::kIterationLimit;
     }
     if (deadline_->passed()) {
       return Status::kTimeLimit;
     }
-    const double mu = x_.dot(y_) / n;
-    r_ = slack_ - y_;
+    r_ = gradient_ - lower_.y;
+    double mu = lower_.gap();
+    if (problem_.has_upper()) {
+      r_ += upper_.y;
+      mu += upper_.gap();
+      for (Index i = 0; i < r_.size(); ++i) {
+        if (problem_.lower()[i] == problem_.upper()[i]) {
+          r_[i] = 0.0;
+        }
+      }
+    }
+    mu = barriers > 0.0 ? mu / barriers : 0.0;
     const double infeasibility = r_.cwiseAbs().maxCoeff();
     const bool progress = mu < 0.9 * least_mu || infeasibility < 0.9 * least_infeasibility;
     without_progress = progress ? 0 : without_progress + 1;
     least_mu = std::min(mu, least_mu);
     least_infeasibility = std::min(infeasibility, least_infeasibility);
-    if (without_progress > kMostWithoutProgress || !(mu > 0.0)) {
+    if (without_progress > kMostWithoutProgress || (barriers > 0.0 && !(mu > 0.0))) {
       return Status::kStalled;
     }
-    d_ = x_.cwiseQuotient(
-        y_ + (rows_.compliance().array() + settings_.proximal).matrix().cwiseProduct(x_));
-    if (!factor() || !newton_direction(-x_.cwiseProduct(y_))) {
-      return Status::kNumericalBreakdown;
+    if (const Status status = predict_and_correct(mu); status != Status::kNotRun) {
+      return status;
     }
-    dx_affine_ = dx_;
-    dy_affine_ = dy_;
-    const double affine = std::min(step_to_boundary(x_, dx_), step_to_boundary(y_, dy_));
-    const double mu_affine = (x_ + affine * dx_).dot(y_ + affine * dy_) / n;
-    const double sigma = std::pow(mu_affine / mu, 3);
-    const Vector target =
-        (-x_.array() * y_.array() - dx_affine_.array() * dy_affine_.array() + sigma * mu).matrix();
-    if (!newton_direction(target)) {
-      return Status::kNumericalBreakdown;
-    }
-    const double step =
-        settings_.step_fraction * std::min(step_to_boundary(x_, dx_), step_to_boundary(y_, dy_));
-    x_ += step * dx_;
-    y_ += step * dy_;
   }
 }
 
-/// The rows' answer change_ to the velocity increment u, and phi's gradient u - G^T change.
-/// Everything is an increment to point_, whose slack is base_slack_: nothing large cancels.
-void InteriorPoint::Workspace::dual_gradient(const Vector& u, Vector& gradient) {
-  rows_.times(u, slack_);
-  slack_ += base_slack_;
-  change_ = (-slack_.array() / weight_.array()).max(-point_.array());
-  rows_.transpose_times(change_, gradient);
-  gradient = u - gradient;
+/// The active set that the iterate points at: a row is between its bounds where its slacks are
+/// larger than their multipliers. @return rows that changed since the last guess
+int InteriorPoint::Workspace::guess_set() {
+  const Index n = problem_.size();
+  last_guess_.swap(guess_);
+  guess_.resize(n);
+  int changed = 0;
+  for (Index i = 0; i < n; ++i) {
+    RowState state = RowState::kBetween;
+    if (problem_.lower()[i] == problem_.upper()[i] ||
+        (lower_.has()[i] != 0.0 && lower_.y[i] > lower_.s[i])) {
+      state = RowState::kAtLower;
+    } else if (upper_.has()[i] != 0.0 && upper_.y[i] > upper_.s[i]) {
+      state = RowState::kAtUpper;
+    }
+    guess_[i] = state;
+    changed += last_guess_.empty() || last_guess_[i] != state ? 1 : 0;
+  }
+  return changed;
 }
 
-/// The exact minimum of phi(velocity_ + t direction) over t >= 0: the derivative is increasing and
-/// piecewise linear, with a break wherever a row enters or leaves. @pre dual_gradient(velocity_).
-double InteriorPoint::Workspace::line_search(const Vector& direction) {
-  rows_.times(direction, g_direction_);
-  double slope = direction.squaredNorm();
-  double derivative = velocity_.dot(direction) - change_.dot(g_direction_);
-  breaks_.clear();
-  for (Index i = 0; i < rows_.rows(); ++i) {
-    const double value = point_[i] - slack_[i] / weight_[i];
-    const double rate = -g_direction_[i] / weight_[i];
-    if (value > 0.0) {
-      slope += weight_[i] * rate * rate;
-    }
-    if ((value > 0.0 && rate < 0.0) || (value <= 0.0 && rate > 0.0)) {
-      breaks_.emplace_back(-value / rate, i);
-    }
+/// Leaves the interior for the active set that the iterate points at, when that has settled. After
+/// a failure it waits, each time longer. @return whether that solves the problem
+bool InteriorPoint::Workspace::cross_over() {
+  constexpr double kSettled = 0.005;  // of the rows may still have changed
+  constexpr ActiveSetNewton::Limits kLimits = {.factorizations = 6, .wrong_share = 0.005};
+  const int changed = guess_set();
+  const bool settled = changed <= kSettled * static_cast<double>(guess_.size());
+  if (!settled || iterations_ < next_crossing_ || guess_ == tried_) {
+    return false;
   }
-  std::sort(breaks_.begin(), breaks_.end());
-  double at = 0.0;
-  for (const auto& [t, i] : breaks_) {
-    if (derivative + slope * (t - at) >= 0.0) {
-      break;
-    }
-    derivative += slope * (t - at);
-    at = t;
-    const double rate = -g_direction_[i] / weight_[i];
-    slope += rate > 0.0 ? weight_[i] * rate * rate : -weight_[i] * rate * rate;
+  tried_ = guess_;
+  trial_ = x_;
+  std::vector<RowState>& state = last_guess_;  // to change; the next guess is compared with guess_
+  state = guess_;
+  if (active_set_.improve(problem_, trial_, state, kLimits, settings_.tolerance) <=
+      settings_.tolerance) {
+    return true;
   }
-  return at - derivative / slope;
+  next_crossing_ = iterations_ + crossing_wait_;
+  crossing_wait_ *= 2;
+  return false;
 }
 
-/// x <- the proximal point's answer. @return false if it could not be found.
-bool InteriorPoint::Workspace::proximal_step(Vector& x) {
-  constexpr int kMostNewtonSteps = 30;
-  point_ = x;
-  rows_.transpose_times(x, velocity_);
-  rows_.times(velocity_, base_slack_);
-  base_slack_ += rows_.compliance().cwiseProduct(x) + g_;
-  velocity_.setZero();
-  double last = kInfinity;
-  for (int step = 0;; ++step) {
-    dual_gradient(velocity_, gradient_);
-    const double size = gradient_.cwiseAbs().maxCoeff();
-    const double enough = 1e-14 * (velocity_.cwiseAbs().maxCoeff() + change_.cwiseAbs().maxCoeff());
-    if (!std::isfinite(size)) {
-      return false;
-    }
-    if (size <= enough || step == kMostNewtonSteps || (step > 3 && size >= last)) {
-      break;
-    }
-    last = size;
-    for (Index i = 0; i < rows_.rows(); ++i) {
-      d_[i] = change_[i] > -point_[i] ? 1.0 / weight_[i] : 0.0;
-    }
-    if (!factor()) {
-      return false;
-    }
-    direction_ = -gradient_;
-    cholesky_->solve(direction_);
-    const double t = line_search(direction_);
-    if (!std::isfinite(t)) {
-      return false;
-    }
-    velocity_ += t * direction_;
-  }
-  x = (point_ + change_).cwiseMax(0.0);
-  return true;
-}
-
-void InteriorPoint::Workspace::polish(Status& ending) {
+/// Proximal Newton from the best iterate. @return whether that solves the problem
+bool InteriorPoint::Workspace::polish(int most_factorizations) {
   constexpr double kWorthPolishing = 1e-4;  // from a worse start the active set is a guess
-  if (!(best_residual_ <= kWorthPolishing)) {
-    return;
+  if (body_space_ && problem_.best_residual() <= kWorthPolishing) {
+    proximal_newton_.improve(
+        problem_, bodies_, settings_.polish_proximal, settings_.max_polish_steps,
+        bodies_.factorizations() + most_factorizations, settings_.tolerance, *deadline_);
   }
-  weight_ = rows_.compliance().array() + settings_.polish_proximal;
-  Vector x = best_x_;
-  double before = best_residual_;
-  for (int step = 0; step < settings_.max_polish_steps && !deadline_->passed(); ++step) {
-    if (!proximal_step(x)) {
-      break;
-    }
-    const double after = consider(x);
-    if (after > 0.5 * before || best_residual_ <= 0.01 * settings_.tolerance) {
-      break;
-    }
-    before = after;
-  }
-  if (ending == Status::kSolved) {
-    ending = Status::kStalled;  // only the certificate says solved
-  }
+  return problem_.best_residual() <= settings_.tolerance;
 }
 
 void InteriorPointSettings::validate() const {
@@ -335,10 +472,13 @@ InteriorPoint::InteriorPoint(const InteriorPointSettings& settings)
 InteriorPoint::~InteriorPoint() = default;
 
 std::string InteriorPoint::refuses(const Problem& problem) const {
-  if (!std::holds_alternative<FactoredMatrix>(problem.M)) {
-    return "takes a factored matrix A = J W J^T; this M is given whole";
+  if (!problem.cones.empty()) {
+    return "takes no friction cones; row " + std::to_string(problem.cones.front().normal_row) +
+           " has one";
   }
-  return problem.is_lcp() ? "" : "takes an LCP; this problem has bounds, free or coupled rows";
+  return problem.limits.empty() ? ""
+                                : "takes no coupled limits; row " +
+                                      std::to_string(problem.limits.front().row) + " has one";
 }
 
 Status InteriorPoint::iterate(const Problem& problem, const Vector* warm_start,

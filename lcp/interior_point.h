@@ -28,24 +28,32 @@ struct InteriorPointSettings : SolverSettings {
   void validate() const;
 };
 
-/// Interior point and Newton polish for 0 <= f ⊥ A f + q >= 0 with A = J W J^T + c (symmetric
-/// positive semidefinite), in body space: the matrix that is factored is H = I + G^T D G, one block
-/// a body, never A (whitened_rows.h). Redundant contacts cost nothing and disturb nothing.
+/// Interior point and Newton polish for problems with bounds and free rows,
 ///
-/// 1. Mehrotra's predictor-corrector on x = S f, y = w / S, x.y -> 0: with r = A x + g - y,
-///    (A + Y/X) dx = -r + r_c / X is solved as du = H^-1 G^T D h, dx = D (h - G du). (Mehrotra,
-///    SIAM J. Optim. 2, 1992; Wright, Primal-Dual Interior-Point Methods, 1997, chapter 8.)
-/// 2. Polish: proximal-point steps x <- argmin_{x >= 0} 1/2 x.A x + g.x + delta/2 |x - x_k|^2, each
-/// by
-///    semismooth Newton on its dual, the convex piecewise quadratic phi(u) = 1/2 |u|^2 + delta/2
-///    |max(0, x_k - (G u + g) / delta)|^2 with an exact line search (Rockafellar 1976; Li, Sun, Toh
-///    2018). The last digits come from here, and a solution with exact zeros.
+///     w = M z + q,   lower <= z <= upper,   w_i >= 0 at lower, <= 0 at upper, = 0 in between.
 ///
-/// Takes factored LCPs. Statuses beside solved: kIterationLimit, kTimeLimit, kStalled, and
-/// kNumericalBreakdown if a factorisation failed; z is the best iterate that was looked at.
-/// An infeasible problem ends as kStalled or kIterationLimit: it proves nothing.
-/// Cost: one sparse factorisation of H an iteration (statistics.factorizations), whose analysis is
-/// done once.
+/// In scaled coordinates (shifted_system.h: A with unit diagonal, x = S z, g = q / S):
+/// 1. Mehrotra's predictor-corrector with a barrier for every bound, s = x - lower with multiplier
+///    y, t = upper - x with multiplier v: with r = A x + g - y + v,
+///    (A + Y/S + V/T + proximal) dx = -r + c_s / s - c_t / t. (Mehrotra, SIAM J. Optim. 2, 1992;
+///    Wright, Primal-Dual Interior-Point Methods, 1997, chapter 8.) Free rows have no barrier: the
+///    proximal term moves them by exact Newton steps on w_i = 0.
+/// 2. As soon as the active set that the iterate points at has settled, Newton on that set
+///    (active_set_newton.h): usually one to three factorisations to the last digits.
+/// 3. Where the set does not settle (degenerate contacts): proximal Newton from the interior
+///    (proximal_newton.h; factored M only).
+///
+/// A factored M, A = J W J^T + c, is never formed: what is factored is H = I + G^T D G, one block a
+/// body (whitened_rows.h). Redundant contacts cost nothing and disturb nothing. A given M may be
+/// nonsymmetric; the method is made for semidefinite M, whatever else it solves.
+///
+/// A warm start is tried as an active set first.
+///
+/// Takes no coupled limits and no cones. Statuses beside solved: kIterationLimit, kTimeLimit,
+/// kStalled, and kNumericalBreakdown if a factorisation failed; z is the best iterate that was
+/// looked at. An infeasible problem ends as kStalled or kIterationLimit: it proves nothing.
+/// Cost: one sparse factorisation an iteration (statistics.factorizations), whose analysis is done
+/// once, and not at all when the last problem had the same pattern.
 class InteriorPoint : public Solver {
  public:
   /// @throws std::invalid_argument for a setting out of its range.

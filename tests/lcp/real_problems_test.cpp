@@ -52,12 +52,12 @@ std::string value_of(const fs::path& folder, const std::string& key) {
   return "";
 }
 
-std::vector<Folder> folders(const char* part, int max_rows) {
+std::vector<Folder> folders(const char* part, int max_rows, const char* kind = "lcp") {
   std::vector<Folder> found;
   const fs::path root = fs::path(SIGNORINI_SHARED_DIR) / "data" / part;
   std::error_code absent;
   for (const auto& entry : fs::directory_iterator(root, absent)) {
-    if (value_of(entry.path(), "kind") != "lcp") {
+    if (value_of(entry.path(), "kind") != kind) {
       continue;
     }
     const int size = std::stoi(value_of(entry.path(), "size"));
@@ -217,6 +217,33 @@ void expect_the_w_of_lemke(const char* solver, const Reasons& failures, const Fo
     EXPECT_LE(distance, 1e-4 * (1.0 + problem.q.norm()));
   }
 }
+
+const Reasons kInteriorPointFailures = {
+    {"lcp_Pang_isolated_sol", "M is neither semidefinite nor a P matrix: the path leads away"},
+};
+
+/// Every lcp and mlcp folder: bounds, free rows, nonsymmetric M.
+std::vector<Folder> interior_point_folders() {
+  std::vector<Folder> found = all_folders(kMaxRows == 600 ? 5000 : kMaxRows, kMaxGeneratedRows);
+  const std::vector<Folder> mixed = folders("contact-problems", 600, "mlcp");
+  found.insert(found.end(), mixed.begin(), mixed.end());
+  return found;
+}
+
+class InteriorPointSolves : public testing::TestWithParam<Folder> {};
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(InteriorPointSolves);
+
+TEST_P(InteriorPointSolves, Certified) {
+  const Result result = solve("interior-point", read_problem(GetParam().path));
+  if (is_known_failure(kInteriorPointFailures, GetParam(), result)) {
+    GTEST_SKIP() << to_string(result.status) << ": " << kInteriorPointFailures.at(GetParam().name);
+  }
+  expect_certified(result);
+  EXPECT_LE(result.statistics.factorizations, 80);
+}
+
+INSTANTIATE_TEST_SUITE_P(RealProblems, InteriorPointSolves,
+                         testing::ValuesIn(interior_point_folders()), test_name);
 
 class PgsSolves : public testing::TestWithParam<Folder> {};
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(PgsSolves);
