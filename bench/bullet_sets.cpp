@@ -362,7 +362,7 @@ std::string bullet_sets_text(const std::vector<BulletSetRun>& runs) {
   }
   std::string text = fmt::format("{:<18}", "m/s / us");
   for (const std::string& set : sets) {
-    text += fmt::format("{:>24}", set);
+    text += fmt::format("  {:>32}", set);
   }
   text += "\n";
   for (const std::string& solver : solvers) {
@@ -378,7 +378,7 @@ std::string bullet_sets_text(const std::vector<BulletSetRun>& runs) {
         cell = fmt::format("{}{:.0e} / {:.0f}", is_plain ? "" : fmt::format("{} ", run.outcome),
                            run.residual, 1e6 * run.seconds);
       }
-      text += fmt::format("{:>24}", cell);
+      text += fmt::format("  {:>32}", cell);
     }
     text += "\n";
   }

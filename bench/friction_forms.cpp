@@ -98,4 +98,20 @@ lcp::Problem make_coupled_box(const FamilyScene& scene, double mu) {
   return problem;
 }
 
+lcp::Problem make_cones(const FamilyScene& scene, double mu) {
+  check_friction(mu);
+  lcp::FactoredMatrix A = scene.inverse_mass();
+  lcp::Problem problem;
+  for (const FamilyScene::Touch& touch : scene.touches) {
+    problem.cones.push_back({.normal_row = A.rows(), .dimension = 3, .coefficient = mu});
+    const TangentFrame frame = tangent_frame(touch.normal, free_slip(scene, touch));
+    for (const Vec3& direction : {touch.normal, frame.t1, frame.t2}) {
+      scene.add_row(touch, direction, A);
+    }
+  }
+  problem.q = scene.free_row_velocities(A);
+  problem.M = std::move(A);
+  return problem;
+}
+
 }  // namespace signorini::bench

@@ -16,4 +16,8 @@ namespace signorini::bench {
 /// @throws std::invalid_argument for mu <= 0.
 [[nodiscard]] lcp::Problem make_coupled_box(const FamilyScene& scene, double mu);
 
+/// The same contacts with Coulomb's cones in De Saxce's form: rows 3 c (normal), 3 c + 1 and
+/// 3 c + 2 (tangents) for contact c. @throws std::invalid_argument for mu <= 0.
+[[nodiscard]] lcp::Problem make_cones(const FamilyScene& scene, double mu);
+
 }  // namespace signorini::bench

@@ -63,7 +63,14 @@ std::string refuses_all_but_lcp(const lcp::Problem& problem) {
   return problem.is_lcp() ? "" : "takes an LCP alone";
 }
 
+std::string refuses_cones(const lcp::Problem& problem) {
+  return problem.cones.empty() ? "" : "takes no friction cones";
+}
+
 std::string refuses_all_but_boxes(const lcp::Problem& problem) {
+  if (!problem.cones.empty()) {
+    return refuses_cones(problem);
+  }
   const RowBounds bounds = row_bounds(problem);
   for (lcp::Index i = 0; i < problem.size(); ++i) {
     if (bounds.lower[i] > 0.0 || bounds.upper[i] < 0.0) {

@@ -87,6 +87,7 @@ inline constexpr double kRegularisation = 1.0 + 1e-10;
 
 /// What several libraries refuse. Each returns a reason or nothing.
 [[nodiscard]] std::string refuses_all_but_lcp(const lcp::Problem& problem);
+[[nodiscard]] std::string refuses_cones(const lcp::Problem& problem);
 /// Symmetric M, 0 in [lower, upper], any bounds and coupled limits; no cones.
 [[nodiscard]] std::string refuses_all_but_symmetric_boxes(const lcp::Problem& problem);
 /// As above, any M with a diagonal.

@@ -43,6 +43,9 @@ lcp::Problem make_form(const std::string& form, const FamilySpec& spec, double m
     return make_family(spec);
   }
   const FamilyScene scene = make_family_scene(spec);
+  if (form == "cone") {
+    return make_cones(scene, mu);
+  }
   return form == "pyramid" ? make_pyramid_lcp(scene, mu) : make_coupled_box(scene, mu);
 }
 
@@ -115,8 +118,12 @@ bool is_problem(const std::filesystem::path& folder) {
 
 void add_folder(const std::filesystem::path& folder, std::vector<PeerProblem>& problems) {
   lcp::ProblemFolder read = lcp::read_problem_folder(folder);
-  if (read.kind != "lcp" && read.kind != "mlcp") {
-    return;  // friction cones: see below
+  if (read.problem.cones.empty()) {  // the friction coefficients say what the rows are
+    for (lcp::Index c = 0; c < read.mu.size(); ++c) {
+      read.problem.cones.push_back({.normal_row = read.dimension * static_cast<int>(c),
+                                    .dimension = read.dimension,
+                                    .coefficient = read.mu[c]});
+    }
   }
   PeerProblem problem;
   problem.form = read.kind;
@@ -150,8 +157,8 @@ void add_folders(const std::filesystem::path& given, std::vector<PeerProblem>& p
 
 void check(const PeerProblemOptions& options) {
   for (const std::string& form : options.forms) {
-    if (form != "lcp" && form != "pyramid" && form != "box") {
-      throw std::invalid_argument("form: must be one of lcp, pyramid, box; got " + form);
+    if (form != "lcp" && form != "pyramid" && form != "box" && form != "cone") {
+      throw std::invalid_argument("form: must be one of lcp, pyramid, box, cone; got " + form);
     }
   }
   for (const int n : options.sizes) {

@@ -11,8 +11,8 @@ namespace signorini::bench {
 
 /// A problem of the comparison, made when its turn comes.
 struct PeerProblem {
-  std::string name;    ///< "tower4-64-R1-moving"
-  std::string form;    ///< "lcp", "mlcp", "pyramid", "box": what kind of rows; one profile each
+  std::string name;  ///< "tower4-64-R1-moving"
+  std::string form;  ///< "lcp", "mlcp", "pyramid", "box", "cone", "fc3d", "fc2d": one profile each
   std::string family;  ///< "tower4", "fathi", "folder": one table each, with the form
   std::string column;  ///< what tells it from the others of its table: "64 R1e3 rest"
   double mass_ratio = 1.0;
@@ -27,7 +27,7 @@ struct PeerProblem {
 struct PeerProblemOptions {
   std::vector<std::string> families;  ///< of contact_families.h, and "psd", "psd-half" (rank n/2),
                                       ///< "murty", "fathi"
-  std::vector<std::string> forms = {"lcp"};  ///< of contacts: "lcp", "pyramid", "box"
+  std::vector<std::string> forms = {"lcp"};  ///< of contacts: "lcp", "pyramid", "box", "cone"
   std::vector<int> sizes = {64, 256, 1000};  ///< rows of the frictionless problem, about
   std::vector<double> mass_ratios = {1.0};
   bool moving = true;

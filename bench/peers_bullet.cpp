@@ -121,7 +121,7 @@ void add_bullet_peers(std::vector<PeerEntry>& entries) {
   entry.name = "bullet-pgs";
   entry.counts_sweeps = true;
   // A zero on the diagonal is left to it: it divides and does not say so.
-  entry.refuses = nullptr;
+  entry.refuses = &refuses_cones;
   entry.make = [](const PeerSettings&) {
     return std::make_unique<BulletPeer<btSolveProjectedGaussSeidel>>(double{BT_INFINITY},
                                                                      Claim::kNothing);

@@ -76,7 +76,7 @@ PeersCommand::PeersCommand(CLI::App& app) : options_(std::make_unique<Options>()
   command_ = app.add_subcommand(
       "peers", "Our solvers and Bullet's, ODE's, DART's and Siconos's on the same problems");
   command_->add_option("FOLDER", o.folders,
-                       "Problem folders, or folders of problem folders (lcp, mlcp)");
+                       "Problem folders, or folders of problem folders (lcp, mlcp, fc3d, fc2d)");
   command_
       ->add_option("--families", o.problems.families,
                    "Contact families, psd, psd-half (rank n/2), murty, fathi; none: folders "
@@ -86,7 +86,7 @@ PeersCommand::PeersCommand(CLI::App& app) : options_(std::make_unique<Options>()
   command_
       ->add_option("--forms", o.problems.forms,
                    "Of the contacts: lcp (frictionless), pyramid (nonsymmetric LCP), box "
-                   "(coupled limits)")
+                   "(coupled limits), cone (Coulomb)")
       ->delimiter(',')
       ->capture_default_str();
   command_->add_option("--sizes", o.problems.sizes, "Rows without friction, about")

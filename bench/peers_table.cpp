@@ -42,6 +42,22 @@ struct Grid {
   }
 };
 
+constexpr std::size_t kMostColumns = 18;  // three sizes, three mass ratios, moving and at rest
+constexpr std::size_t kFewColumns = 8;    // of one piece of a longer table
+
+/// A table of many problems as several of a few.
+void split(const Grid& grid, std::vector<Grid>& all) {
+  const std::size_t count = grid.problems.size();
+  const std::size_t step = count <= kMostColumns ? kMostColumns : kFewColumns;
+  for (std::size_t first = 0; first < count; first += step) {
+    Grid piece = grid;
+    piece.problems.assign(
+        grid.problems.begin() + static_cast<std::ptrdiff_t>(first),
+        grid.problems.begin() + static_cast<std::ptrdiff_t>(std::min(count, first + step)));
+    all.push_back(std::move(piece));
+  }
+}
+
 std::vector<Grid> grids(const PeersResult& result) {
   std::vector<std::pair<std::string, std::string>> keys;
   std::map<std::pair<std::string, std::string>, Grid> by_key;
@@ -59,7 +75,7 @@ std::vector<Grid> grids(const PeersResult& result) {
   }
   std::vector<Grid> all;
   for (const auto& key : keys) {
-    all.push_back(std::move(by_key[key]));
+    split(by_key[key], all);
   }
   return all;
 }

@@ -148,6 +148,39 @@ TEST(PeerProblems, AreTheProductOfTheOptionsSmallerOnesFirst) {
   }
 }
 
+TEST(FrictionForms, ConesHoldTheSlidingSphereToo) {
+  const FamilyScene scene = make_family_scene({.family = "spheres", .size = 5});
+  const Problem cones = make_cones(scene, 0.3);
+  ASSERT_EQ(cones.size(), 15);
+  ASSERT_EQ(cones.cones.size(), 5u);
+  // The same rows as the coupled box, contact by contact.
+  const Problem box = make_coupled_box(scene, 0.3);
+  const Matrix A = lcp::to_dense(cones.M);
+  const Matrix B = lcp::to_dense(box.M);
+  for (Index c = 0; c < 5; ++c) {
+    EXPECT_EQ(cones.q[3 * c], box.q[c]);
+    EXPECT_EQ(cones.q[3 * c + 1], box.q[5 + 2 * c]);
+    EXPECT_EQ(A(3 * c, 3 * c), B(c, c));
+    EXPECT_EQ(A(3 * c + 2, 3 * c + 2), B(6 + 2 * c, 6 + 2 * c));
+  }
+  EXPECT_THROW(static_cast<void>(make_cones(scene, -1.0)), std::invalid_argument);
+}
+
+TEST(PeerProblems, FrictionFoldersAreCones) {
+  const std::filesystem::path folder =
+      std::filesystem::path(SIGNORINI_SHARED_DIR) / "data/contact-problems/FC3D_Example1";
+  if (!std::filesystem::exists(folder)) {
+    GTEST_SKIP() << folder << " is absent";
+  }
+  const auto problems = peer_problems({.families = {}, .folders = {folder}});
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].form, "fc3d");
+  const Problem problem = problems[0].make();
+  ASSERT_FALSE(problem.cones.empty());
+  EXPECT_EQ(problem.size(), static_cast<Index>(3 * problem.cones.size()));
+  lcp::check_shapes(problem);
+}
+
 TEST(PeerProblems, FoldersAreReadOneOrMany) {
   const std::filesystem::path root =
       std::filesystem::path(testing::TempDir()) / ("peers_" + std::to_string(::getpid()));
@@ -464,6 +497,28 @@ TEST_P(EveryLibrary, SolvesAPositiveDefiniteProblem) {
   EXPECT_GE(solved, 1);
   EXPECT_GE(2 * solved, asked) << peers_text(result);
   EXPECT_EQ(result.wrong_of_ours(), 0);
+}
+
+TEST(Peers, SiconosSolvesCones) {
+  PeersOptions options;
+  for (const PeerEntry& entry : all_peers()) {
+    if (entry.name.rfind("siconos-fc3d", 0) == 0) {
+      options.solvers.push_back(entry.name);
+    }
+  }
+  if (options.solvers.empty()) {
+    GTEST_SKIP() << "this build is without Siconos (libsiconos-numerics-dev)";
+  }
+  options.limits.child.seconds = 20.0;
+  options.limits.repeats = 1;
+  options.limits.repeat_seconds = 0.0;
+  const auto problems = peer_problems(
+      {.families = {"spheres"}, .forms = {"cone", "lcp"}, .sizes = {4}, .folders = {}});
+  const PeersResult result = run_peers_study(problems, all_peers(), options, nullptr);
+  for (const PeersRow& row : result.rows) {
+    EXPECT_EQ(row.run.verdict, row.form == "cone" ? Verdict::kSolved : Verdict::kRefused)
+        << row.solver << " on " << row.problem << ": " << row.run.said;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Peers, EveryLibrary,
