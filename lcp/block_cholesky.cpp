@@ -45,8 +45,7 @@ void BlockCholesky::analyse(const SparseMatrix& lower) {
   pattern_inner_.assign(lower.innerIndexPtr(), lower.innerIndexPtr() + lower.nonZeros());
   find_blocks(lower);
   find_graph(lower);
-  order_by_minimum_degree(graph_, order_);
-  supernodes_.analyse(graph_, order_);
+  find_order();
   lay_out_fronts();
   lay_out_stack();
   find_scatter(lower);
@@ -136,6 +135,21 @@ void BlockCholesky::find_graph(const SparseMatrix& lower) {
   for (int b = 0; b < blocks; ++b) {
     std::sort(graph_.neighbours.begin() + graph_.start[b],
               graph_.neighbours.begin() + graph_.start[b + 1]);
+  }
+}
+
+void BlockCholesky::find_order() {
+  // Below this a second ordering costs more than it can save in some factorisations.
+  constexpr double kManyFlops = 3e7;
+  order_by_minimum_degree(graph_, order_);
+  supernodes_.analyse(graph_, order_);
+  const double flops = supernodes_.flops(graph_);
+  if (flops > kManyFlops) {
+    nested_dissection_.order(graph_, order_);
+    other_supernodes_.analyse(graph_, order_);
+    if (other_supernodes_.flops(graph_) < flops) {
+      std::swap(supernodes_, other_supernodes_);
+    }
   }
 }
 

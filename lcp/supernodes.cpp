@@ -176,6 +176,23 @@ void Supernodes::cut(const Graph& graph) {
   }
 }
 
+double Supernodes::flops(const Graph& graph) const {
+  double sum = 0.0;
+  for (int s = 0; s < count(); ++s) {
+    double length = 0.0;
+    for (int k = row_start[s]; k < row_start[s + 1]; ++k) {
+      length += graph.weight[order[rows[k]]];
+    }
+    for (int k = first_pivot[s + 1] - 1; k >= first_pivot[s]; --k) {
+      for (int i = 0; i < graph.weight[order[k]]; ++i) {
+        length += 1.0;
+        sum += length * length;
+      }
+    }
+  }
+  return sum;
+}
+
 void Supernodes::write_rows() {
   const int n = static_cast<int>(post_.size());
   order.resize(n);

@@ -19,6 +19,10 @@ class Supernodes {
   /// changes no fill. Reuses memory.
   void analyse(const Graph& graph, const std::vector<int>& order);
 
+  /// Of the numeric factorisation, panels' zeros included: the sum of the squares of the column
+  /// lengths.
+  [[nodiscard]] double flops(const Graph& graph) const;
+
   [[nodiscard]] int count() const { return static_cast<int>(first_pivot.size()) - 1; }
 
   std::vector<int> order;        ///< order[k]: the node that is the k-th pivot

@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <bench/contact_families.h>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <numeric>
 #include <random>
@@ -173,6 +174,66 @@ TEST(BlockCholesky, FillIsWithinTheRelaxationOfTheSimplicialFactor) {
     EXPECT_LE(cholesky.counts().entries, 1.6 * simplicial->counts().entries) << name;
     EXPECT_GT(cholesky.counts().bytes, 8 * cholesky.counts().entries);
   }
+}
+
+/// The grid of so many nodes a side in 1, 2 or 3 dimensions.
+Graph grid(int side, int dimensions) {
+  Graph graph;
+  const int nodes = static_cast<int>(std::lround(std::pow(side, dimensions)));
+  for (int k = 0; k < nodes; ++k) {
+    std::vector<int> neighbours;
+    for (int d = 0, step = 1; d < dimensions; ++d, step *= side) {
+      const int at = k / step % side;
+      if (at > 0) neighbours.push_back(k - step);
+      if (at + 1 < side) neighbours.push_back(k + step);
+    }
+    std::ranges::sort(neighbours);
+    graph.neighbours.insert(graph.neighbours.end(), neighbours.begin(), neighbours.end());
+    graph.start.push_back(static_cast<int>(graph.neighbours.size()));
+    graph.weight.push_back(1 + k % 3);
+  }
+  return graph;
+}
+
+TEST(NestedDissection, OrdersEveryNodeOnce) {
+  NestedDissection dissection;
+  for (const auto& [side, dimensions] :
+       {std::pair(0, 1), {1, 1}, {700, 1}, {30, 2}, {9, 3}, {120, 1}}) {
+    Graph graph = grid(side, dimensions);
+    // And two parts that do not touch.
+    const int n = graph.nodes();
+    Graph twice = graph;
+    for (int k = 0; k < n; ++k) {
+      for (int e = graph.start[k]; e < graph.start[k + 1]; ++e) {
+        twice.neighbours.push_back(n + graph.neighbours[e]);
+      }
+      twice.start.push_back(static_cast<int>(twice.neighbours.size()));
+      twice.weight.push_back(1);
+    }
+    for (const Graph* one : {&graph, &twice}) {
+      std::vector<int> order;
+      dissection.order(*one, order);
+      std::ranges::sort(order);
+      std::vector<int> all(one->nodes());
+      std::iota(all.begin(), all.end(), 0);
+      EXPECT_EQ(order, all) << side << "^" << dimensions;
+    }
+  }
+}
+
+TEST(NestedDissection, BeatsMinimumDegreeInSpaceAndNotOnALine) {
+  NestedDissection dissection;
+  const auto flops = [&](const Graph& graph, bool dissect) {
+    std::vector<int> order;
+    dissect ? dissection.order(graph, order) : order_by_minimum_degree(graph, order);
+    Supernodes supernodes;
+    supernodes.analyse(graph, order);
+    return supernodes.flops(graph);
+  };
+  const Graph cube = grid(18, 3);
+  EXPECT_LT(flops(cube, true), 0.8 * flops(cube, false));
+  const Graph line = grid(1000, 1);
+  EXPECT_GE(flops(line, true), 0.9 * flops(line, false));
 }
 
 TEST(Supernodes, EveryColumnOfTheFactorIsInsideItsPanel) {
