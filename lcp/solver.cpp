@@ -33,7 +33,7 @@ bool Deadline::passed() const {
   return elapsed_seconds() > seconds_;
 }
 
-void Solver::finish(const Problem& problem, Status ending, Result& result) {
+void Solver::certify_result(const Problem& problem, Status ending, Result& result) {
   result.certificate = certifier_.certify(problem, result.z, &result.w);
   result.status = judge(result.certificate, settings().tolerance, ending);
   if (is_solved(result.status)) {
@@ -76,7 +76,7 @@ void Solver::solve(const Problem& problem, Result& result, const Vector* warm_st
     const Status ending =
         n == 0 ? Status::kSolved
                : iterate(problem, start_is_finite ? warm_start : nullptr, deadline, result);
-    finish(problem, is_solved(ending) ? Status::kNumericalBreakdown : ending, result);
+    certify_result(problem, is_solved(ending) ? Status::kNumericalBreakdown : ending, result);
     if (!start_is_finite) {
       result.detail += result.detail.empty() ? "" : "; ";
       result.detail += "warm start not finite, not used";

@@ -66,9 +66,12 @@ class Solver {
   /// together with result.ray. Called with n >= 1 and finite data.
   virtual Status iterate(const Problem& problem, const Vector* warm_start, const Deadline& deadline,
                          Result& result) = 0;
+  /// Certifies result.z, judges it and its ray, and names the status: `ending` unless they say
+  /// more. A solver whose z was certified already, by the solver that it handed the same problem
+  /// to, may take that certificate over.
+  virtual void certify_result(const Problem& problem, Status ending, Result& result);
 
  private:
-  void finish(const Problem& problem, Status ending, Result& result);
   Certifier certifier_;
 };
 

@@ -1,5 +1,6 @@
 #include <signorini/lcp/alart_curnier.h>
 #include <signorini/lcp/apgd.h>
+#include <signorini/lcp/auto_solver.h>
 #include <signorini/lcp/dantzig.h>
 #include <signorini/lcp/interior_point.h>
 #include <signorini/lcp/lemke.h>
@@ -31,6 +32,7 @@ std::unique_ptr<Solver> make(const SolverSettings& settings) {
 }
 
 constexpr std::array kEntries = {
+    Entry{"auto", &make<AutoSolver, AutoSettings>},
     Entry{"lemke", &make<Lemke, LemkeSettings>},
     Entry{"structured-lemke", &make<StructuredLemke, StructuredLemkeSettings>},
     Entry{"interior-point", &make<InteriorPoint, InteriorPointSettings>},

@@ -1,0 +1,232 @@
+#include <signorini/lcp/auto_solver.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace signorini::lcp {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr Index kSmall = 100;                 // rows up to which dense pivoting is the fastest
+constexpr Index kStructuredLemkeRows = 2000;  // a pivot costs up to n^2 / 2
+constexpr Index kLemkeRows = 1000;            // the same, with larger constants
+constexpr double kMassRatioForSweeps = 1e3;   // above it sweeps stall
+constexpr int kFirstSweeps = 32;
+
+bool is_symmetric(const Matrix& M) {
+  for (Index j = 0; j < M.cols(); ++j) {
+    for (Index i = 0; i < j; ++i) {
+      if (M(i, j) != M(j, i)) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+bool is_symmetric(const SparseMatrix& M) {
+  for (int j = 0; j < M.outerSize(); ++j) {
+    for (SparseMatrix::InnerIterator it(M, j); it; ++it) {
+      if (it.value() != M.coeff(j, it.row())) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+bool is_symmetric(const FactoredMatrix&) {
+  return true;
+}
+
+/// Largest over smallest mass, by the first degree of freedom of every block; at least 1.
+double mass_ratio(const BlockMass& mass) {
+  double most = 0.0;
+  double least = kInfinity;
+  std::vector<double> unit;
+  std::vector<double> column;
+  for (int b = 0; b < mass.block_count(); ++b) {
+    const std::size_t size = static_cast<std::size_t>(mass.dimension(b));
+    if (size == 0) {
+      continue;
+    }
+    unit.assign(size, 0.0);
+    column.resize(size);
+    unit[0] = 1.0;
+    mass.apply_inverse(b, unit.data(), column.data());
+    most = std::max(most, column[0]);
+    least = std::min(least, column[0]);
+  }
+  return least > 0.0 && std::isfinite(least) ? std::max(most / least, 1.0) : kInfinity;
+}
+
+/// Adds a counter that may be absent (-1).
+void add(int& sum, int counter) {
+  if (counter >= 0) {
+    sum = std::max(sum, 0) + counter;
+  }
+}
+
+}  // namespace
+
+void AutoSettings::validate() const {
+  SolverSettings::validate();
+  if (most_sweeps < 0) {
+    throw std::invalid_argument("settings: most_sweeps: must be >= 0, got " +
+                                std::to_string(most_sweeps));
+  }
+}
+
+AutoSolver::AutoSolver(const AutoSettings& settings) : settings_(settings) {
+  settings_.validate();
+}
+
+std::string AutoSolver::refuses(const Problem&) const {
+  return {};
+}
+
+void AutoSolver::choose(const Problem& problem) {
+  const Index n = problem.size();
+  const bool factored = std::holds_alternative<FactoredMatrix>(problem.M);
+  chain_.clear();
+  sweeps_first_ = false;
+  if (!problem.cones.empty()) {
+    chain_.push_back({"alart-curnier", "friction cones"});
+    return;
+  }
+  const bool symmetric = std::visit([](const auto& M) { return is_symmetric(M); }, problem.M);
+  if (symmetric && n <= kSmall) {
+    chain_.push_back({"dantzig", "symmetric and small"});
+    chain_.push_back({"structured-lemke", "symmetric and small"});
+  } else if (factored) {
+    sweeps_first_ = settings_.most_sweeps > 0 &&
+                    mass_ratio(std::get<FactoredMatrix>(problem.M).mass) <= kMassRatioForSweeps;
+    chain_.push_back({"interior-point", "factored and large"});
+  }
+  chain_.push_back({"alart-curnier", symmetric ? "symmetric" : "not symmetric"});
+  if (symmetric && n > kSmall && n <= kStructuredLemkeRows) {
+    chain_.push_back({"structured-lemke", "a vertex, or a proof that there is none"});
+  }
+  if (n <= kLemkeRows) {
+    chain_.push_back({"lemke", "a vertex, or a proof that there is none"});
+  }
+  chain_.push_back({"pgs", "takes everything"});
+}
+
+Solver& AutoSolver::solver(std::string_view name, int max_iterations, double time_left) {
+  const auto same = [&](const Made& made) {
+    return made.name == name && made.max_iterations == max_iterations;
+  };
+  auto found = std::ranges::find_if(made_, same);
+  if (found != made_.end() && !std::isfinite(settings_.time_limit)) {
+    return *found->solver;
+  }
+  SolverSettings own = settings_;
+  own.max_iterations = max_iterations;
+  own.time_limit = time_left;
+  if (found == made_.end()) {
+    made_.push_back({name, max_iterations, nullptr});
+    found = std::prev(made_.end());
+  }
+  found->solver = make_solver(name, own);
+  return *found->solver;
+}
+
+bool AutoSolver::attempt(const Problem& problem, const Step& step, int max_iterations,
+                         const Deadline& deadline, Result& result) {
+  const double left = settings_.time_limit - deadline.elapsed_seconds();
+  if (!(left > 0.0)) {
+    return true;
+  }
+  Solver& tried = solver(step.solver, max_iterations, left);
+  if (!tried.refuses(problem).empty()) {
+    return false;
+  }
+  tried.solve(problem, one_, has_start_ ? &start_ : nullptr);
+  result.attempts.push_back({step.solver, step.reason, one_.status,
+                             one_.certificate.natural_residual, one_.certificate.unit_free_residual,
+                             one_.statistics, one_.detail});
+  add(result.statistics.iterations, one_.statistics.iterations);
+  add(result.statistics.pivots, one_.statistics.pivots);
+  add(result.statistics.factorizations, one_.statistics.factorizations);
+  add(result.statistics.refinements, one_.statistics.refinements);
+  if (one_.ray.size() > 0 && one_.ray_bound > result.ray_bound) {
+    result.ray = one_.ray;
+    result.ray_bound = one_.ray_bound;
+  }
+  const double merit = BestIterate::merit(one_.certificate);
+  if (is_solved(one_.status) || merit < best_merit_ || best_solver_.empty()) {
+    best_merit_ = merit;
+    best_solver_ = step.solver;
+    best_certificate_ = one_.certificate;
+    best_status_ = one_.status;
+    result.z = one_.z;
+    result.w = one_.w;
+    start_ = one_.z;
+    has_start_ = true;
+  }
+  return is_solved(one_.status) || one_.status == Status::kInfeasible;
+}
+
+/// Sweeps in pieces of doubling length, while the last piece promises an end.
+bool AutoSolver::sweep(const Problem& problem, const Deadline& deadline, Result& result) {
+  double before = kInfinity;
+  for (int sweeps = kFirstSweeps, done = 0; done < settings_.most_sweeps; sweeps *= 2) {
+    if (attempt(problem, {"pgs", done == 0 ? "a few sweeps first" : "its residual falls fast"},
+                sweeps, deadline, result)) {
+      return true;
+    }
+    done += sweeps;
+    const double after = BestIterate::merit(one_.certificate);
+    const double rate = std::isfinite(before) ? std::log(before / after) / sweeps : 0.0;
+    const double needed = std::log(after / settings_.tolerance);
+    const bool promises = rate * (settings_.most_sweeps - done) > needed;
+    if (done > kFirstSweeps && !promises) {
+      return false;
+    }
+    before = after;
+  }
+  return false;
+}
+
+Status AutoSolver::iterate(const Problem& problem, const Vector* warm_start,
+                           const Deadline& deadline, Result& result) {
+  choose(problem);
+  best_merit_ = kInfinity;
+  best_solver_ = {};
+  best_status_ = Status::kNotRun;
+  has_start_ = warm_start != nullptr;
+  if (has_start_) {
+    start_ = *warm_start;
+  }
+  result.z.setZero();
+  bool done = sweeps_first_ && settings_.max_iterations < 0 && sweep(problem, deadline, result);
+  for (std::size_t k = 0; !done && k < chain_.size(); ++k) {
+    done = attempt(problem, chain_[k], settings_.max_iterations, deadline, result);
+  }
+  result.solver = "auto";
+  if (!best_solver_.empty()) {
+    result.solver += ": ";
+    result.solver += best_solver_;
+  }
+  if (deadline.elapsed_seconds() >= settings_.time_limit) {
+    return Status::kTimeLimit;
+  }
+  return result.ray.size() > 0 ? Status::kRayUnproven : one_.status;
+}
+
+/// An attempt that solved it was certified and judged on the same problem and z.
+void AutoSolver::certify_result(const Problem& problem, Status ending, Result& result) {
+  if (best_solver_.empty() || !is_solved(best_status_)) {
+    Solver::certify_result(problem, ending, result);
+    return;
+  }
+  result.certificate = best_certificate_;
+  result.status = best_status_;
+  result.ray.resize(0);
+}
+
+}  // namespace signorini::lcp

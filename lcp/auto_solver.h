@@ -1,0 +1,87 @@
+#pragma once
+
+#include <signorini/lcp/best_iterate.h>
+#include <signorini/lcp/solver.h>
+
+#include <memory>
+#include <string_view>
+#include <vector>
+
+namespace signorini::lcp {
+
+/// Settings of AutoSolver. max_iterations is handed to every solver tried, in its own unit.
+struct AutoSettings : SolverSettings {
+  /// Plain sweeps are tried first, and gone on with while the residual's fall over the last ones
+  /// promises the tolerance within this many; >= 0, 0: never. Larger: more is lost where they
+  /// stall, more won where they do not. At 1000 rows 500 sweeps cost about one interior point.
+  int most_sweeps = 500;
+
+  /// @throws std::invalid_argument that names the setting, its value and the bound.
+  void validate() const;
+};
+
+/// Chooses solvers for the problem and tries them in turn until one solves it.
+///
+/// The choice depends on counts and on the data alone, never on a clock (unless time_limit is set,
+/// which each solver then gets what is left of): the same input gives the same bits.
+///
+/// | problem | tried in this order |
+/// |---|---|
+/// | friction cones | alart-curnier |
+/// | symmetric M, n <= 100 | dantzig, structured-lemke, alart-curnier, lemke, pgs |
+/// | factored M, n > 100 | pgs in pieces while it promises to end soon (not above a mass ratio of
+/// 1e3), interior-point, alart-curnier, structured-lemke, lemke, pgs |
+/// | symmetric M given whole, n > 100 | alart-curnier, structured-lemke, lemke, pgs |
+/// | other M | alart-curnier, lemke, pgs |
+///
+/// Solvers that refuse a problem are passed over; lemke only up to 1000 rows, structured-lemke up
+/// to 2000. Each starts from the best iterate so far. result.attempts lists every one tried, with
+/// the reason, status, residuals, cost and time; result.solver names the one whose iterate is
+/// returned ("auto: pgs"), and the statistics are sums over the attempts. If none solves, z is the
+/// best iterate, and a ray that any of them proved is kept.
+class AutoSolver : public Solver {
+ public:
+  /// @throws std::invalid_argument for a setting out of its range.
+  explicit AutoSolver(const AutoSettings& settings = {});
+
+  [[nodiscard]] std::string_view name() const override { return "auto"; }
+  /// Every problem of problem.h is taken.
+  [[nodiscard]] std::string refuses(const Problem& problem) const override;
+
+ protected:
+  const SolverSettings& settings() const override { return settings_; }
+  Status iterate(const Problem& problem, const Vector* warm_start, const Deadline& deadline,
+                 Result& result) override;
+  void certify_result(const Problem& problem, Status ending, Result& result) override;
+
+ private:
+  struct Made {
+    std::string_view name;
+    int max_iterations;
+    std::unique_ptr<Solver> solver;
+  };
+  struct Step {
+    std::string_view solver;
+    std::string_view reason;
+  };
+  void choose(const Problem& problem);
+  Solver& solver(std::string_view name, int max_iterations, double time_left);
+  /// @return true if nothing more need be tried.
+  bool attempt(const Problem& problem, const Step& step, int max_iterations,
+               const Deadline& deadline, Result& result);
+  bool sweep(const Problem& problem, const Deadline& deadline, Result& result);
+
+  AutoSettings settings_;
+  std::vector<Made> made_;
+  std::vector<Step> chain_;
+  bool sweeps_first_ = false;
+  Result one_;    // of the attempt
+  Vector start_;  // the best iterate so far, or the warm start
+  bool has_start_ = false;
+  double best_merit_ = 0.0;
+  Certificate best_certificate_;
+  Status best_status_ = Status::kNotRun;
+  std::string_view best_solver_;
+};
+
+}  // namespace signorini::lcp

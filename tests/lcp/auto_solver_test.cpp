@@ -1,0 +1,191 @@
+#include <signorini/lcp/auto_solver.h>
+
+#include "allocation_count.h"
+#include "bench/contact_families.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+#include <numeric>
+#include <random>
+
+namespace signorini::lcp {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Result solve(const Problem& problem, const AutoSettings& settings = {}) {
+  Result result;
+  AutoSolver(settings).solve(problem, result);
+  return result;
+}
+
+Problem lcp(const Matrix& M, const Vector& q) {
+  Problem problem;
+  problem.M = M;
+  problem.q = q;
+  return problem;
+}
+
+Problem family(std::string_view name, int size, double mass_ratio = 1.0) {
+  return bench::make_family({.family = name, .size = size, .mass_ratio = mass_ratio});
+}
+
+TEST(AutoSolver, SolvesASmallSymmetricProblemWithDantzigAlone) {
+  const Result result = solve(lcp(Matrix{{2, 1}, {1, 2}}, Vector{{-3, -3}}));
+  EXPECT_EQ(result.status, Status::kSolved);
+  EXPECT_EQ(result.solver, "auto: dantzig");
+  ASSERT_EQ(result.attempts.size(), 1U);
+  EXPECT_EQ(result.attempts[0].solver, "dantzig");
+  EXPECT_EQ(result.attempts[0].reason, "symmetric and small");
+  EXPECT_EQ(result.attempts[0].status, Status::kSolved);
+  EXPECT_EQ(result.w, Vector::Zero(2));
+}
+
+TEST(AutoSolver, CertificateIsThatOfItsZ) {
+  for (const char* name : {"tower4", "spheres"}) {
+    const Problem problem = family(name, name[0] == 't' ? 8 : 40);
+    const Result result = solve(problem);
+    Vector w;
+    const Certificate again = certify(problem, result.z, &w);
+    EXPECT_EQ(result.certificate.unit_free_residual, again.unit_free_residual);
+    EXPECT_EQ(result.certificate.natural_residual, again.natural_residual);
+    EXPECT_EQ(result.w, w);
+  }
+}
+
+TEST(AutoSolver, SolvesLargeFactoredProblems) {
+  for (const double R : {1.0, 1e6}) {
+    for (const char* name : {"tower4", "pyramid2d", "pyramid3d", "spheres"}) {
+      const int size = name == std::string_view("tower4")      ? 60
+                       : name == std::string_view("pyramid2d") ? 8
+                       : name == std::string_view("pyramid3d") ? 5
+                                                               : 300;
+      const Result result = solve(family(name, size, R));
+      EXPECT_TRUE(is_solved(result.status)) << name << ' ' << R << ' ' << to_string(result.status);
+      EXPECT_FALSE(result.attempts.empty());
+    }
+  }
+}
+
+TEST(AutoSolver, SweepsAloneWhereTheyWin) {
+  AutoSettings settings;
+  settings.tolerance = 1e-3;
+  const Result result = solve(family("pyramid3d", 5), settings);
+  EXPECT_EQ(result.status, Status::kSolved);
+  EXPECT_EQ(result.solver, "auto: pgs");
+  EXPECT_EQ(result.statistics.factorizations, -1);
+}
+
+TEST(AutoSolver, DoesNotSweepWhereMassesDiffer) {
+  const Result result = solve(family("tower4", 60, 1e6));
+  EXPECT_EQ(result.attempts.front().solver, "interior-point");
+}
+
+TEST(AutoSolver, StatisticsAreSumsOverTheAttempts) {
+  const Result result = solve(family("tower4", 60));
+  ASSERT_GE(result.attempts.size(), 2U);
+  int iterations = 0;
+  for (const Attempt& attempt : result.attempts) {
+    iterations += std::max(attempt.statistics.iterations, 0);
+  }
+  EXPECT_EQ(result.statistics.iterations, iterations);
+}
+
+TEST(AutoSolver, TakesConesFreeRowsBoundsAndCoupledLimits) {
+  Problem problem = lcp(2.0 * Matrix::Identity(3, 3), Vector{{-4, 3, 4}});
+  problem.cones = {{.normal_row = 0, .dimension = 3, .coefficient = 0.5}};
+  const Result cone = solve(problem);
+  EXPECT_EQ(cone.status, Status::kSolved);
+  EXPECT_EQ(cone.solver, "auto: alart-curnier");
+
+  problem.cones.clear();
+  problem.limits = {{.row = 1, .normal_row = 0, .coefficient = 0.5}};
+  problem.lower = Vector{{0, 0, -kInfinity}};
+  const Result limits = solve(problem);
+  EXPECT_EQ(limits.status, Status::kSolved);
+  EXPECT_NEAR(limits.z[1], -1.0, 1e-8);
+  EXPECT_NEAR(limits.z[2], -2.0, 1e-8);
+}
+
+TEST(AutoSolver, ProvesWhatIsInfeasible) {
+  const Result result = solve(lcp(Matrix{{1, -1}, {-1, 1}}, Vector{{-1, -1}}));
+  EXPECT_EQ(result.status, Status::kInfeasible);
+  EXPECT_EQ(result.ray.size(), 2);
+  EXPECT_EQ(result.ray_bound, kInfinity);
+}
+
+// w = -1 - z has a ray for every method that follows one and no solution.
+TEST(AutoSolver, TriesEverySolverBeforeItGivesUp) {
+  const Result result = solve(lcp(Matrix{{0, -1}, {-2, 0}}, Vector{{-1, -1}}));
+  EXPECT_FALSE(is_solved(result.status));
+  EXPECT_GE(result.attempts.size(), 2U);
+  EXPECT_TRUE(result.z.allFinite());
+}
+
+TEST(AutoSolver, GivesTheSameBitsAgain) {
+  const Problem problem = family("spheres", 300);
+  AutoSolver solver;
+  Result result;
+  solver.solve(problem, result);
+  const Vector first = result.z;
+  solver.solve(family("tower4", 60), result);
+  solver.solve(problem, result);
+  EXPECT_EQ(result.z, first);
+}
+
+TEST(AutoSolver, StopsAtItsTimeLimit) {
+  AutoSettings settings;
+  settings.time_limit = 1e-9;
+  const Result result = solve(family("spheres", 300), settings);
+  EXPECT_EQ(result.status, Status::kTimeLimit);
+  EXPECT_TRUE(result.z.allFinite());
+}
+
+TEST(AutoSolver, TakesNoRowsAndRefusesNaN) {
+  EXPECT_EQ(solve(lcp(Matrix(0, 0), Vector(0))).status, Status::kSolved);
+  EXPECT_EQ(solve(lcp(Matrix{{std::nan("")}}, Vector{{1}})).status, Status::kInvalidInput);
+}
+
+// Murty, Linear Complementarity (1988), section 6.2, and Fathi's symmetric form: 2^n - 1 pivots of
+// the textbook methods.
+TEST(AutoSolver, IsNotExponentialOnMurtysAndFathisExamples) {
+  for (const int n : {4, 12, 20}) {
+    Matrix murty = Matrix::Identity(n, n);
+    Vector powers(n);
+    double sum = 0.0;
+    for (int i = n - 1; i >= 0; --i) {
+      murty.row(i).tail(n - i - 1).setConstant(2.0);
+      sum += std::ldexp(1.0, n - 1 - i);
+      powers[i] = -sum;
+    }
+    for (const Matrix& M : {murty, Matrix(murty * murty.transpose())}) {
+      for (const Vector& q : {powers, Vector(-Vector::Ones(n))}) {
+        const Result result = solve(lcp(M, q));
+        EXPECT_EQ(result.status, Status::kSolved) << n;
+        EXPECT_LE(std::max(result.statistics.pivots, 0), 3 * n);
+        EXPECT_LE(std::max(result.statistics.factorizations, 0), 3 * n);
+      }
+    }
+  }
+}
+
+TEST(AutoSolver, AllocatesNothingTheSecondTimeOnSmallProblems) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  Matrix G(16, 10);
+  for (double& value : G.reshaped()) value = normal(random);
+  Vector v(10);
+  for (double& value : v) value = normal(random);
+  const Problem problem = lcp(Matrix(G * G.transpose()), G * v);
+  AutoSolver solver;
+  Result result;
+  solver.solve(problem, result);
+  ASSERT_EQ(result.status, Status::kSolved);
+  const AllocationCount allocations;
+  solver.solve(problem, result);
+  EXPECT_EQ(allocations.count(), 0);
+}
+
+}  // namespace
+}  // namespace signorini::lcp
