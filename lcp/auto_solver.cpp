@@ -43,11 +43,9 @@ bool is_symmetric(const FactoredMatrix&) {
 }
 
 /// Largest over smallest mass, by the first degree of freedom of every block; at least 1.
-double mass_ratio(const BlockMass& mass) {
+double mass_ratio(const BlockMass& mass, std::vector<double>& unit, std::vector<double>& column) {
   double most = 0.0;
   double least = kInfinity;
-  std::vector<double> unit;
-  std::vector<double> column;
   for (int b = 0; b < mass.block_count(); ++b) {
     const std::size_t size = static_cast<std::size_t>(mass.dimension(b));
     if (size == 0) {
@@ -102,8 +100,9 @@ void AutoSolver::choose(const Problem& problem) {
     chain_.push_back({"dantzig", "symmetric and small"});
     chain_.push_back({"structured-lemke", "symmetric and small"});
   } else if (factored) {
-    sweeps_first_ = settings_.most_sweeps > 0 &&
-                    mass_ratio(std::get<FactoredMatrix>(problem.M).mass) <= kMassRatioForSweeps;
+    sweeps_first_ =
+        settings_.most_sweeps > 0 &&
+        mass_ratio(std::get<FactoredMatrix>(problem.M).mass, unit_, column_) <= kMassRatioForSweeps;
     chain_.push_back({"interior-point", "factored and large"});
   }
   chain_.push_back({"alart-curnier", symmetric ? "symmetric" : "not symmetric"});
