@@ -2,6 +2,8 @@
 #include <signorini/lcp/number_text.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -55,6 +57,40 @@ int BlockMass::add(const Matrix& values, bool is_factor) {
   values_.insert(values_.end(), values.data(), values.data() + values.size());
   degrees_of_freedom_ += dimension;
   return block_count() - 1;
+}
+
+bool BlockMass::inverse_root(int block, double* F) const {
+  const auto [offset, d, start, is_factor] = blocks_[block];
+  const double* v = values_.data() + start;
+  std::fill_n(F, d * d, 0.0);
+  for (int j = 0; j < d; ++j) {
+    if (is_factor) {  // column j of L^-T: L^T f = e_j
+      for (int i = j; i >= 0; --i) {
+        double sum = i == j ? 1.0 : 0.0;
+        for (int k = i + 1; k <= j; ++k) {
+          sum -= v[i * d + k] * F[j * d + k];
+        }
+        F[j * d + i] = sum / v[i * d + i];
+      }
+      continue;
+    }
+    double pivot = v[j * d + j];
+    for (int k = 0; k < j; ++k) {
+      pivot -= F[k * d + j] * F[k * d + j];
+    }
+    if (!(pivot > 0.0)) {
+      return false;
+    }
+    F[j * d + j] = std::sqrt(pivot);
+    for (int i = j + 1; i < d; ++i) {
+      double sum = v[j * d + i];
+      for (int k = 0; k < j; ++k) {
+        sum -= F[k * d + i] * F[k * d + j];
+      }
+      F[j * d + i] = sum / F[j * d + j];
+    }
+  }
+  return true;
 }
 
 void BlockMass::clear() {

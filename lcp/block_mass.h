@@ -40,6 +40,12 @@ class BlockMass {
   template <typename Scalar>
   void apply_inverse(int block, const Scalar* x, Scalar* y) const;
 
+  /// F with W_k = F F^T: the Cholesky factor of a W_k that was given (lower), L^-T of a mass that
+  /// was given (upper).
+  /// @param F dimension(block)^2 numbers, column-major, written whole
+  /// @return false, and F unfinished, where a W_k that was given is not positive definite.
+  [[nodiscard]] bool inverse_root(int block, double* F) const;
+
  private:
   struct Block {
     int offset;
