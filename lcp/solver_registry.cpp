@@ -4,9 +4,12 @@
 #include <signorini/lcp/dantzig.h>
 #include <signorini/lcp/interior_point.h>
 #include <signorini/lcp/lemke.h>
+#include <signorini/lcp/nncg.h>
 #include <signorini/lcp/pgs.h>
+#include <signorini/lcp/psor.h>
 #include <signorini/lcp/solver.h>
 #include <signorini/lcp/structured_lemke.h>
+#include <signorini/lcp/symmetric_pgs.h>
 
 #include <array>
 #include <stdexcept>
@@ -31,6 +34,14 @@ std::unique_ptr<Solver> make(const SolverSettings& settings) {
   return std::make_unique<Made>(own);
 }
 
+template <typename Made, typename Settings>
+std::unique_ptr<Solver> make_float(const SolverSettings& settings) {
+  Settings own;
+  static_cast<SolverSettings&>(own) = settings;
+  own.precision = Precision::kFloat;
+  return std::make_unique<Made>(own);
+}
+
 constexpr std::array kEntries = {
     Entry{"auto", &make<AutoSolver, AutoSettings>},
     Entry{"lemke", &make<Lemke, LemkeSettings>},
@@ -40,6 +51,13 @@ constexpr std::array kEntries = {
     Entry{"dantzig", &make<Dantzig, DantzigSettings>},
     Entry{"alart-curnier", &make<AlartCurnier, AlartCurnierSettings>},
     Entry{"pgs", &make<Pgs, PgsSettings>},
+    Entry{"pgs-float", &make_float<Pgs, PgsSettings>},
+    Entry{"symmetric-pgs", &make<SymmetricPgs, SymmetricPgsSettings>},
+    Entry{"symmetric-pgs-float", &make_float<SymmetricPgs, SymmetricPgsSettings>},
+    Entry{"psor", &make<Psor, PsorSettings>},
+    Entry{"psor-float", &make_float<Psor, PsorSettings>},
+    Entry{"nncg", &make<Nncg, NncgSettings>},
+    Entry{"nncg-float", &make_float<Nncg, NncgSettings>},
 #ifdef SIGNORINI_HAS_GMP
     Entry{"exact", &make<ExactLemke, ExactLemkeSettings>},
 #endif
