@@ -99,6 +99,38 @@ void check_point(const btManifoldPoint& point, const btContactSolverInfo& info) 
   }
 }
 
+/// Velocity of contact point A against contact point B.
+Vec3 contact_velocity(const BulletContacts& all, const Contact& contact) {
+  const auto at = [&](int body, const Vec3& point) {
+    return velocity(all.bodies[body], all.free_state[body]).at(point - all.free_state[body].x);
+  };
+  return at(contact.body_a, contact.point_a) - at(contact.body_b, contact.point_b);
+}
+
+/// Gives the impulse to both bodies of a contact, each at its own point.
+void push(const BulletContacts& all, const Contact& contact, const Vec3& impulse, State& state) {
+  const auto push_one = [&](int body, const Vec3& point, const Vec3& p) {
+    if (all.bodies[body].is_dynamic()) {
+      state[body].p += p;
+      state[body].L += (point - state[body].x).cross(p);
+    }
+  };
+  push_one(contact.body_a, contact.point_a, impulse);
+  push_one(contact.body_b, contact.point_b, -impulse);
+}
+
+void write_velocities(const BulletGroup& group, const BulletContacts& contacts,
+                      const State& state) {
+  for (int i = 0; i < group.body_count; ++i) {
+    if (contacts.bodies[i].is_dynamic()) {
+      const Velocity v = velocity(contacts.bodies[i], state[i]);
+      btRigidBody& body = *btRigidBody::upcast(group.bodies[i]);
+      body.setLinearVelocity(bullet(v.linear));
+      body.setAngularVelocity(bullet(v.angular));
+    }
+  }
+}
+
 bool is_movable(const btRigidBody& body) {
   return body.getInvMass() > 0.0;
 }
@@ -267,17 +299,75 @@ void write_solution(const BulletGroup& group, const BulletContacts& contacts,
                     const lcp::VectorRef& f) {
   State state = contacts.free_state;
   apply_impulses(contacts.bodies, contacts.contacts, f, state);
-  for (int i = 0; i < group.body_count; ++i) {
-    if (contacts.bodies[i].is_dynamic()) {
-      const Velocity v = velocity(contacts.bodies[i], state[i]);
-      btRigidBody& body = *btRigidBody::upcast(group.bodies[i]);
-      body.setLinearVelocity(bullet(v.linear));
-      body.setAngularVelocity(bullet(v.angular));
-    }
-  }
+  write_velocities(group, contacts, state);
   for (std::size_t i = 0; i < contacts.points.size(); ++i) {
     contacts.points[i]->m_appliedImpulse = f[static_cast<lcp::Index>(i)];
   }
+}
+
+void assemble_cones(const BulletContacts& contacts, BulletCones& cones) {
+  NormalRows normals;  // for its masses
+  assemble_normals(contacts.bodies, contacts.free_state, contacts.contacts, normals);
+  lcp::FactoredMatrix A;
+  A.mass = normals.A.mass;
+  const std::size_t count = contacts.contacts.size();
+  cones.frames.resize(count);
+  cones.problem.cones.clear();
+  cones.problem.q.resize(3 * static_cast<lcp::Index>(count));
+  for (std::size_t c = 0; c < count; ++c) {
+    const Contact& contact = contacts.contacts[c];
+    const Vec3 u = contact_velocity(contacts, contact);
+    cones.frames[c] = tangent_frame(contact.normal, u);
+    cones.problem.cones.push_back(
+        {.normal_row = A.rows(), .dimension = 3, .coefficient = contact.material.friction});
+    for (const Vec3& direction : {contact.normal, cones.frames[c].t1, cones.frames[c].t2}) {
+      cones.problem.q[A.add_row()] = direction.dot(u);
+      const auto add_body = [&](int body, const Vec3& point, double sign) {
+        if (const int block = normals.block_of_body[body]; block >= 0) {
+          lcp::Vector values(6);
+          values << sign * direction, sign * (point - contacts.free_state[body].x).cross(direction);
+          A.add_entry(block, values);
+        }
+      };
+      add_body(contact.body_a, contact.point_a, 1.0);
+      add_body(contact.body_b, contact.point_b, -1.0);
+    }
+    cones.problem.q[3 * static_cast<lcp::Index>(c)] +=
+        contacts.allowance[static_cast<lcp::Index>(c)];
+  }
+  cones.problem.M = std::move(A);
+}
+
+lcp::Vector written_impulses(const BulletContacts& contacts, const BulletCones& cones) {
+  lcp::Vector z(3 * static_cast<lcp::Index>(contacts.points.size()));
+  for (std::size_t c = 0; c < contacts.points.size(); ++c) {
+    const btManifoldPoint& point = *contacts.points[c];
+    // Bullet's second direction is only in use where it has an impulse.
+    const Vec3 friction = point.m_appliedImpulseLateral1 * ours(point.m_lateralFrictionDir1) +
+                          point.m_appliedImpulseLateral2 * ours(point.m_lateralFrictionDir2);
+    z.segment<3>(3 * static_cast<lcp::Index>(c)) << point.m_appliedImpulse,
+        friction.dot(cones.frames[c].t1), friction.dot(cones.frames[c].t2);
+  }
+  return z;
+}
+
+void write_solution(const BulletGroup& group, const BulletContacts& contacts,
+                    const BulletCones& cones, const lcp::VectorRef& z) {
+  State state = contacts.free_state;
+  for (std::size_t c = 0; c < contacts.points.size(); ++c) {
+    const Vec3 parts = z.segment<3>(3 * static_cast<lcp::Index>(c));
+    const TangentFrame& frame = cones.frames[c];
+    const Contact& contact = contacts.contacts[c];
+    push(contacts, contact, parts[0] * contact.normal + parts[1] * frame.t1 + parts[2] * frame.t2,
+         state);
+    btManifoldPoint& point = *contacts.points[c];
+    point.m_appliedImpulse = parts[0];
+    point.m_appliedImpulseLateral1 = parts[1];
+    point.m_appliedImpulseLateral2 = parts[2];
+    point.m_lateralFrictionDir1 = bullet(frame.t1);
+    point.m_lateralFrictionDir2 = bullet(frame.t2);
+  }
+  write_velocities(group, contacts, state);
 }
 
 btScalar CapturingSolver::solveGroup(btCollisionObject** bodies, int body_count,

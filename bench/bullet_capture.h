@@ -3,6 +3,7 @@
 #include <signorini/core/model/body.h>
 #include <signorini/core/model/contact.h>
 #include <signorini/core/response/assembly.h>
+#include <signorini/core/response/friction_pyramid.h>
 
 #include <btBulletDynamicsCommon.h>
 #include <functional>
@@ -70,11 +71,24 @@ struct BulletContacts {
   void read(const BulletGroup& group);
 };
 
+/// The contacts with Coulomb friction at all of them, in De Saxce's form: rows 3 c (N), 3 c + 1 and
+/// 3 c + 2 (tangents) of contact c, each body's friction at its own contact point as in Bullet.
+struct BulletCones {
+  lcp::Problem problem;              ///< z in N s, w in m/s: M z + q, q with the allowance
+  std::vector<TangentFrame> frames;  ///< one a contact
+};
+void assemble_cones(const BulletContacts& contacts, BulletCones& cones);
+
+/// The impulses that Bullet's solver wrote into the points, as z of the cones: the normal one, and
+/// its friction impulses along their directions in the frames.
+[[nodiscard]] lcp::Vector written_impulses(const BulletContacts& contacts,
+                                           const BulletCones& cones);
+
 /// Sets applied impulses of all points to zero, as nothing of the last step may help a solver.
 /// (Warm starting stays on: without it Bullet does not write impulses back.)
 void forget_impulses(const BulletGroup& group);
 
-/// Sums of normal impulses as Bullet's solver wrote them into the points, N s.
+/// Normal impulses as Bullet's solver wrote them into the points, N s.
 [[nodiscard]] lcp::Vector written_impulses(const BulletContacts& contacts);
 
 /// d'+ + allowance with the velocities that the bodies of the group have now, m/s.
@@ -84,6 +98,10 @@ void forget_impulses(const BulletGroup& group);
 /// points the impulses: what a Bullet solver would leave behind.
 void write_solution(const BulletGroup& group, const BulletContacts& contacts,
                     const lcp::VectorRef& f);
+
+/// The same for a solution of the cones.
+void write_solution(const BulletGroup& group, const BulletContacts& contacts,
+                    const BulletCones& cones, const lcp::VectorRef& z);
 
 /// Bullet's sequential impulses that show every group to a visitor before they solve it.
 /// The visitor may do what it likes with the group: it is restored after the visit.

@@ -9,6 +9,7 @@
 #include <BulletDynamics/MLCPSolvers/btMLCPSolver.h>
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <fmt/format.h>
 #include <functional>
@@ -45,35 +46,47 @@ struct Report {
   }
 };
 
-/// Judges the impulses that were left in the points, in long double, whoever wrote them.
-void judge(const BulletContacts& contacts, const NormalRows& rows, Report& report) {
-  const lcp::Vector f = written_impulses(contacts);
+/// What a set asks for, without friction or with it.
+struct AssembledSet {
+  BulletContacts contacts;
+  NormalRows rows;
+  BulletCones cones;
+  bool has_friction = false;
   lcp::Problem problem;
-  problem.M = rows.A;
-  problem.q = rows.d_dot + contacts.allowance;
-  const lcp::Index n = problem.size();
-  std::vector<long double> z(n);
-  std::vector<long double> w(n);
-  for (lcp::Index i = 0; i < n; ++i) {
-    z[i] = f[i];
+
+  void read(const BulletGroup& group) {
+    contacts.read(group);
+    has_friction = std::any_of(contacts.contacts.begin(), contacts.contacts.end(),
+                               [](const Contact& one) { return one.material.friction > 0.0; });
+    if (has_friction) {
+      assemble_cones(contacts, cones);
+      return;
+    }
+    assemble_normals(contacts.bodies, contacts.free_state, contacts.contacts, rows);
+    problem.q = rows.d_dot + contacts.allowance;
+    problem.M = rows.A;
   }
-  lcp::multiply(problem.M, z.data(), w.data());
-  lcp::Vector diagonal;
-  lcp::diagonal(problem.M, diagonal);
-  long double residual = 0.0L;
-  long double scaled = 0.0L;
-  for (lcp::Index i = 0; i < n; ++i) {
-    const long double target = w[i] + problem.q[i];
-    const auto worse = [](long double most, long double one) {
-      const long double size = one < 0 ? -one : one;
-      return size <= most ? most : size;  // NaN wins
-    };
-    residual = worse(residual, std::min(z[i], target));
-    scaled = worse(scaled, std::min(diagonal[i] * z[i], target));
-    report.negative_impulses += z[i] < 0.0L ? 1 : 0;
+  [[nodiscard]] const lcp::Problem& asked() const { return has_friction ? cones.problem : problem; }
+  [[nodiscard]] lcp::Vector written() const {
+    return has_friction ? written_impulses(contacts, cones) : written_impulses(contacts);
   }
-  report.residual = static_cast<double>(residual);
-  report.scaled_residual = static_cast<double>(scaled);
+  void write(const BulletGroup& group, const lcp::Vector& z) const {
+    if (has_friction) {
+      write_solution(group, contacts, cones, z);
+    } else {
+      write_solution(group, contacts, z);
+    }
+  }
+};
+
+/// Judges the impulses that were left in the points, in long double, whoever wrote them.
+void judge(const AssembledSet& set, const lcp::Vector& z, Report& report) {
+  const lcp::Certificate certificate = lcp::certify(set.asked(), z);
+  const double q = set.asked().q.lpNorm<Eigen::Infinity>();
+  report.residual = certificate.natural_residual * (1.0 + q);
+  report.scaled_residual = certificate.unit_free_residual * q;
+  report.negative_impulses =
+      static_cast<int>((written_impulses(set.contacts).array() < 0.0).count());
 }
 
 /// A contestant: what it does to the group counts, from the state on to the written impulses.
@@ -84,10 +97,13 @@ struct Solver {
 };
 
 Solver bullet_solver(const std::string& name, int iterations,
-                     std::function<std::shared_ptr<btConstraintSolver>()> make) {
-  return {name, [iterations, make](const BulletGroup& group) -> std::function<void(Report&)> {
+                     std::function<std::shared_ptr<btConstraintSolver>()> make,
+                     int more_modes = 0) {
+  return {name,
+          [iterations, make, more_modes](const BulletGroup& group) -> std::function<void(Report&)> {
             btContactSolverInfo info = *group.info;
             info.m_numIterations = iterations;
+            info.m_solverMode |= more_modes;
             std::shared_ptr<btConstraintSolver> solver = make();
             return [&group, info, solver](Report&) { group.solve(*solver, info); };
           }};
@@ -116,24 +132,18 @@ Solver our_solver(std::string_view name, double tolerance) {
           [name, tolerance](const BulletGroup& group) -> std::function<void(Report&)> {
             struct Workspace {
               std::unique_ptr<lcp::Solver> solver;
-              BulletContacts contacts;
-              NormalRows rows;
-              lcp::Problem problem;
+              AssembledSet set;
               lcp::Result result;
             };
             auto work = std::make_shared<Workspace>();
             work->solver = lcp::make_solver(name, {.tolerance = tolerance});
             return [&group, work](Report& report) {
               Workspace& w = *work;
-              w.contacts.read(group);
-              assemble_normals(w.contacts.bodies, w.contacts.free_state, w.contacts.contacts,
-                               w.rows);
-              w.problem.q = w.rows.d_dot + w.contacts.allowance;
-              w.problem.M = w.rows.A;
+              w.set.read(group);
               const Clock::time_point start = Clock::now();
-              w.solver->solve(w.problem, w.result);
+              w.solver->solve(w.set.asked(), w.result);
               report.solve_seconds = seconds_since(start);
-              write_solution(group, w.contacts, w.result.z);
+              w.set.write(group, w.result.z);
               report.set_outcome(lcp::to_string(w.result.status));
             };
           }};
@@ -150,15 +160,18 @@ std::vector<Solver> all_solvers(const BulletGroup& group, double tolerance) {
                                   [] { return std::make_shared<btNNCGConstraintSolver>(); }));
   solvers.push_back(bullet_mlcp<btDantzigSolver>("Bullet Dantzig"));
   solvers.push_back(bullet_mlcp<btLemkeSolver>("Bullet Lemke"));
-  BulletContacts contacts;
-  contacts.read(group);
-  NormalRows rows;
-  assemble_normals(contacts.bodies, contacts.free_state, contacts.contacts, rows);
-  lcp::Problem problem;
-  problem.q = rows.d_dot + contacts.allowance;
-  problem.M = std::move(rows.A);
+  AssembledSet set;
+  set.read(group);
+  if (set.has_friction) {
+    for (const int iterations : {200, 1000}) {
+      solvers.push_back(bullet_solver(
+          fmt::format("Bullet SI{} 2dir", iterations), iterations,
+          [] { return std::make_shared<btSequentialImpulseConstraintSolver>(); },
+          SOLVER_USE_2_FRICTION_DIRECTIONS));
+    }
+  }
   for (const std::string_view name : lcp::solver_names()) {
-    if (name != "exact" && lcp::make_solver(name)->refuses(problem).empty()) {
+    if (name != "exact" && lcp::make_solver(name)->refuses(set.asked()).empty()) {
       solvers.push_back(our_solver(name, tolerance));
     }
   }
@@ -181,14 +194,12 @@ std::string run_in_this_process(const Solver& solver, const BulletGroup& group,
     }
   }
   // The problem is that of the state before the solve; the impulses are those that it left.
-  BulletContacts contacts;
   const BulletState solved(group);
   start.restore(group);
-  contacts.read(group);
-  NormalRows rows;
-  assemble_normals(contacts.bodies, contacts.free_state, contacts.contacts, rows);
+  AssembledSet set;
+  set.read(group);
   solved.restore(group);
-  judge(contacts, rows, report);
+  judge(set, set.written(), report);
   return {reinterpret_cast<const char*>(&report), sizeof report};
 }
 
@@ -222,6 +233,7 @@ struct BulletScene::Parts {
   btSphereShape sphere{0.5};
   std::vector<std::unique_ptr<btRigidBody>> bodies;
   int steps = 0;
+  double friction = 0.0;
 };
 
 std::vector<std::string> BulletScene::names() {
@@ -235,15 +247,17 @@ void BulletScene::add_body(btCollisionShape& shape, double mass, const btVector3
   }
   btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, &shape, inertia);
   info.m_startWorldTransform.setOrigin(centre);
-  info.m_friction = 0.0;
+  info.m_friction = std::sqrt(parts_->friction);  // Bullet multiplies the two
   auto body = std::make_unique<btRigidBody>(info);
   body->setActivationState(DISABLE_DEACTIVATION);
   parts_->world.addRigidBody(body.get());
   parts_->bodies.push_back(std::move(body));
 }
 
-BulletScene::BulletScene(const std::string& name) : parts_(std::make_unique<Parts>()) {
+BulletScene::BulletScene(const std::string& name, double friction)
+    : parts_(std::make_unique<Parts>()) {
   Parts& parts = *parts_;
+  parts.friction = friction;
   parts.world.setGravity(btVector3(0.0, 0.0, -9.81));
   parts.world.getSimulationIslandManager()->setSplitIslands(false);
   add_body(parts.ground, 0.0, btVector3(0.0, 0.0, -100.0));
@@ -301,7 +315,7 @@ std::vector<BulletSetRun> run_bullet_sets(const BulletSetsOptions& options,
                                           std::ostream* progress) {
   std::vector<BulletSetRun> runs;
   for (const std::string& set : options.sets) {
-    BulletScene scene(set);
+    BulletScene scene(set, options.friction);
     scene.visit([&](const BulletGroup& group) {
       const BulletState start(group);
       BulletContacts contacts;

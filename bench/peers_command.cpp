@@ -206,6 +206,9 @@ BulletSetsCommand::BulletSetsCommand(CLI::App& app) : options_(std::make_unique<
 #ifdef SIGNORINI_PEER_BULLET
   Options& o = *options_;
   command_->add_option("--sets", o.study.sets, "Which")->delimiter(',')->capture_default_str();
+  command_->add_option("--friction", o.study.friction, "mu of every pair; 0: normal rows alone")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   command_->add_option("--repeats", o.study.repeats, "Of every solve; the fastest counts")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -234,8 +237,9 @@ int BulletSetsCommand::run() const {
   const auto runs = run_bullet_sets(o.study, is_watched ? &std::cerr : nullptr);
   fmt::print("{}", bullet_sets_text(runs));
   fmt::print(
-      "max|min(f, d'+ + target)| in m/s, in long double, of the impulses that were left / the "
-      "fastest call in us.\nOurs includes reading Bullet's contacts, assembly, certificate and "
+      "max|min(f, d'+ + target)| in m/s (with friction |z - P_K(z - w~)|), in long double, of the "
+      "impulses that were left / the fastest call in us.\nOurs includes reading Bullet's contacts, "
+      "assembly, certificate and "
       "writing back; Bullet's its own setup and (idle) friction rows.\n");
   if (!o.out.empty()) {
     const std::filesystem::path file = std::filesystem::path(o.out) / "bullet-sets.csv";

@@ -146,6 +146,52 @@ TEST_P(EverySet, OurSolutionIsWrittenWhereBulletWritesIts) {
   });
 }
 
+TEST_P(EverySet, WithFrictionOurRowsAreTheOnesThatBulletSolves) {
+  BulletScene(GetParam(), 0.4).visit([](const BulletGroup& group) {
+    const BulletState start(group);
+    BulletContacts contacts;
+    contacts.read(group);
+    BulletCones cones;
+    assemble_cones(contacts, cones);
+    lcp::check_shapes(cones.problem);
+    for (const int mode : {0, int{SOLVER_USE_2_FRICTION_DIRECTIONS}}) {
+      start.restore(group);
+      forget_impulses(group);
+      btContactSolverInfo info = *group.info;
+      info.m_solverMode |= mode;
+      btSequentialImpulseConstraintSolver solver;
+      group.solve(solver, info);
+      const Vector z = written_impulses(contacts, cones);
+      Vector w(z.size());
+      lcp::multiply(cones.problem.M, z.data(), w.data());
+      w += cones.problem.q;
+      const Vector normals = w(Eigen::seq(0, Eigen::last, 3));
+      const double scale = w.lpNorm<Eigen::Infinity>() + z.lpNorm<Eigen::Infinity>();
+      EXPECT_LE((normals - targets_now(group, contacts)).lpNorm<Eigen::Infinity>(), 1e-12 * scale);
+    }
+    start.restore(group);
+  });
+}
+
+TEST_P(EverySet, WithFrictionOurSolutionIsWrittenWhereBulletWritesIts) {
+  BulletScene(GetParam(), 0.4).visit([](const BulletGroup& group) {
+    BulletContacts contacts;
+    contacts.read(group);
+    BulletCones cones;
+    assemble_cones(contacts, cones);
+    const auto n = static_cast<lcp::Index>(contacts.points.size());
+    const Vector z = Vector::LinSpaced(3 * n, 0.1, 1.0);  // any impulses
+    write_solution(group, contacts, cones, z);
+    EXPECT_LE((written_impulses(contacts, cones) - z).lpNorm<Eigen::Infinity>(), 1e-14);
+    Vector w(z.size());
+    lcp::multiply(cones.problem.M, z.data(), w.data());
+    w += cones.problem.q;
+    const Vector normals = w(Eigen::seq(0, Eigen::last, 3));
+    EXPECT_LE((normals - targets_now(group, contacts)).lpNorm<Eigen::Infinity>(),
+              1e-12 * w.lpNorm<Eigen::Infinity>());
+  });
+}
+
 INSTANTIATE_TEST_SUITE_P(Bullet, EverySet, testing::ValuesIn(BulletScene::names()),
                          [](const auto& named) { return named.param; });
 
