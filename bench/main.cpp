@@ -3,6 +3,7 @@
 #include "bench/impact_study.h"
 #include "bench/one_thread.h"
 #include "bench/peers_command.h"
+#include "bench/scaling_study.h"
 
 #ifdef SIGNORINI_HAS_GMP
 #include "bench/exactness_study.h"
@@ -81,6 +82,13 @@ int run_impacts(const StudyOptions& options) {
   return counts.passed() ? kClaimsHold : kWrongClaim;
 }
 
+int run_scaling(const StudyOptions& options) {
+  make_folder(options);
+  const ScalingReport report = run_scaling_study({.max_rows = options.count}, std::cout);
+  write_csv(options, "scaling", report.to_csv());
+  return report.passed() ? kClaimsHold : kWrongClaim;
+}
+
 int run(int argc, char** argv) {
   CLI::App app{
       "Long studies of Signorini. Each prints a table and judges every answer it counts.\n"
@@ -95,6 +103,14 @@ int run(int argc, char** argv) {
                 "problems", exactness);
   add_study(app, "impacts", "Random multi-contact impacts: the kinetic energy each law gains",
             "impacts", impacts);
+  StudyOptions scaling{.count = 10000};
+  CLI::App* scaling_command = app.add_subcommand(
+      "scaling", "The interior point from 1000 rows up, beside the factorisation floor");
+  scaling_command->add_option("--rows", scaling.count, "Rows of the largest problems")
+      ->check(CLI::Range(1000, 1000000))
+      ->capture_default_str();
+  scaling_command->add_option("--out", scaling.out,
+                              "Folder for scaling.csv, made if absent (default: print only)");
   const PeersCommand peers(app);
   const BulletSetsCommand bullet_sets(app);
   try {
@@ -105,6 +121,10 @@ int run(int argc, char** argv) {
   if (peers.is_asked() || bullet_sets.is_asked()) {
     pin_libraries_to_one_thread(argv);
     return peers.is_asked() ? peers.run() : bullet_sets.run();
+  }
+  if (scaling_command->parsed()) {
+    pin_libraries_to_one_thread(argv);
+    return run_scaling(scaling);
   }
   return exactness_command->parsed() ? run_exactness(exactness) : run_impacts(impacts);
 }

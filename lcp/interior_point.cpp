@@ -338,7 +338,11 @@ Status InteriorPoint::Workspace::interior_point() {
   const int most = settings_.max_iterations >= 0 ? settings_.max_iterations
                                                  : InteriorPointSettings::kDefaultIterations;
   const double barriers = lower_.count() + upper_.count();
+  // Where mu has fallen so far, products of slacks and multipliers are below the rounding of their
+  // largest: only rounding is left to move the iterate.
+  constexpr double kLeastMu = 1e-24;
   double least_mu = kInfinity;
+  double most_mu = 0.0;
   double least_infeasibility = kInfinity;
   constexpr int kMostWithoutProgress = 25;  // far starts rise before they fall
   constexpr double kEarlyPolish = 1e-6;
@@ -379,8 +383,9 @@ Status InteriorPoint::Workspace::interior_point() {
     const bool progress = mu < 0.9 * least_mu || infeasibility < 0.9 * least_infeasibility;
     without_progress = progress ? 0 : without_progress + 1;
     least_mu = std::min(mu, least_mu);
+    most_mu = std::max(mu, most_mu);
     least_infeasibility = std::min(infeasibility, least_infeasibility);
-    if (without_progress > kMostWithoutProgress || (barriers > 0.0 && !(mu > 0.0))) {
+    if (without_progress > kMostWithoutProgress || (barriers > 0.0 && !(mu > kLeastMu * most_mu))) {
       return Status::kStalled;
     }
     if (const Status status = predict_and_correct(mu); status != Status::kNotRun) {
