@@ -11,6 +11,14 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // delta / (delta + smallest eigenvalue that matters).
 constexpr double kProximal = 1e-9;
 constexpr int kMostProximalSteps = 12;
+// Rounds of seek_inside(), and what a round must leave of the largest violation to go on.
+constexpr int kMostRounds = 15;
+constexpr double kHelps = 0.9;
+constexpr double kRounding = 1e-14;
+// The number of wrong rows must fall from one set to the next; several may grow for once.
+constexpr double kMustFall = 0.75;
+constexpr double kMayGrow = 1.3;
+constexpr int kSeveral = 16;
 constexpr double kFew = 4.0;  // wrong rows are never too many to begin with
 
 }  // namespace
@@ -29,6 +37,9 @@ double ActiveSetNewton::improve(ScaledProblem& problem, Vector& x, std::vector<R
       return kInfinity;
     }
     solve_on_set(problem, x, state);
+    if (problem.system().is_symmetric()) {
+      seek_inside(problem, x, state);
+    }
     clamped_ = x.cwiseMax(problem.lower()).cwiseMin(problem.upper());
     if (clamped_ != x) {
       problem.gradient(clamped_, h_);
@@ -43,7 +54,7 @@ double ActiveSetNewton::improve(ScaledProblem& problem, Vector& x, std::vector<R
     if (wrong == 0 || wrong > most_wrong) {
       return residual;  // nothing to correct, or no progress
     }
-    most_wrong = std::max(0.75 * wrong, 0.5 * kFew);
+    most_wrong = wrong <= kSeveral ? std::max(kMayGrow * wrong, kFew) : kMustFall * wrong;
   }
   return residual;
 }
@@ -75,9 +86,39 @@ void ActiveSetNewton::solve_on_set(ScaledProblem& problem, Vector& x,
   }
 }
 
-/// Rows whose sign is wrong change sides. @return how many did
+/// Where rows are redundant the solution on the set is not one point but a plane, of which
+/// solve_on_set() finds the point next to the start: outside the bounds perhaps, while others are
+/// inside. Rows outside are mirrored in their bound and the plane is gone back to, with the factor
+/// at hand, which ends inside if the plane has an inside (Motzkin, Schoenberg 1954, relaxation with
+/// factor 2). Gives up as soon as it does not help: without redundancy the point comes back.
+void ActiveSetNewton::seek_inside(ScaledProblem& problem, Vector& x,
+                                  const std::vector<RowState>& state) {
+  double before = kInfinity;
+  for (int round = 0; round < kMostRounds; ++round) {
+    double most = 0.0;
+    for (Index i = 0; i < x.size(); ++i) {
+      if (state[i] == RowState::kBetween) {
+        most = std::max({most, problem.lower()[i] - x[i], x[i] - problem.upper()[i]});
+      }
+    }
+    if (most == 0.0 || most > kHelps * before) {
+      return;
+    }
+    before = most;
+    for (Index i = 0; i < x.size(); ++i) {
+      if (state[i] == RowState::kBetween) {
+        const double bound = std::clamp(x[i], problem.lower()[i], problem.upper()[i]);
+        x[i] = std::clamp(2.0 * bound - x[i], problem.lower()[i], problem.upper()[i]);
+      }
+    }
+    solve_on_set(problem, x, state);
+  }
+}
+
+/// Rows whose sign is wrong by more than rounding change sides. @return how many did
 int ActiveSetNewton::correct_set(const ScaledProblem& problem, const Vector& x,
                                  std::vector<RowState>& state) {
+  const double rounding = kRounding * (problem.g().cwiseAbs().maxCoeff() + x.cwiseAbs().maxCoeff());
   int wrong = 0;
   for (Index i = 0; i < x.size(); ++i) {
     RowState next = state[i];
@@ -88,12 +129,14 @@ int ActiveSetNewton::correct_set(const ScaledProblem& problem, const Vector& x,
                                            : RowState::kBetween;
         break;
       case RowState::kAtLower:
-        next = gradient_[i] < 0.0 && problem.lower()[i] < problem.upper()[i] ? RowState::kBetween
-                                                                             : state[i];
+        next = gradient_[i] < -rounding && problem.lower()[i] < problem.upper()[i]
+                   ? RowState::kBetween
+                   : state[i];
         break;
       case RowState::kAtUpper:
-        next = gradient_[i] > 0.0 && problem.lower()[i] < problem.upper()[i] ? RowState::kBetween
-                                                                             : state[i];
+        next = gradient_[i] > rounding && problem.lower()[i] < problem.upper()[i]
+                   ? RowState::kBetween
+                   : state[i];
         break;
     }
     wrong += next != state[i] ? 1 : 0;

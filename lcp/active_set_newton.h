@@ -30,7 +30,7 @@ class ActiveSetNewton {
     double wrong_share = 0.1;  ///< gives up where more of the rows have a wrong sign at first
   };
 
-  /// Gives up early where the number of wrong rows does not fall by a quarter.
+  /// Gives up early where the number of wrong rows does not fall.
   /// @param x in: the values of the rows between their bounds, to start from; out: of no use
   /// @param state in: the guess; out: the last set
   /// @return the residual of the last set (ScaledProblem::consider), +infinity if a factorisation
@@ -40,6 +40,7 @@ class ActiveSetNewton {
 
  private:
   void solve_on_set(ScaledProblem& problem, Vector& x, const std::vector<RowState>& state);
+  void seek_inside(ScaledProblem& problem, Vector& x, const std::vector<RowState>& state);
   int correct_set(const ScaledProblem& problem, const Vector& x, std::vector<RowState>& state);
 
   Vector e_, h_, dx_, gradient_, clamped_;

@@ -419,7 +419,7 @@ int InteriorPoint::Workspace::guess_set() {
 /// a failure it waits, each time longer. @return whether that solves the problem
 bool InteriorPoint::Workspace::cross_over() {
   constexpr double kSettled = 0.005;  // of the rows may still have changed
-  constexpr ActiveSetNewton::Limits kLimits = {.factorizations = 6, .wrong_share = 0.005};
+  constexpr ActiveSetNewton::Limits kLimits = {.factorizations = 8, .wrong_share = 0.015};
   const int changed = guess_set();
   const bool settled = changed <= kSettled * static_cast<double>(guess_.size());
   if (!settled || iterations_ < next_crossing_ || guess_ == tried_) {

@@ -284,7 +284,7 @@ TEST_P(FactorizationCounts, ColdWarmAndToTheLastDigits) {
 INSTANTIATE_TEST_SUITE_P(
     AThousandRows, FactorizationCounts,
     testing::Values(Counts{{"tower4", 250}, 12, 2}, Counts{{"tower8", 125}, 8, 2},
-                    Counts{{"pyramid2d", 16}, 22, 14}, Counts{{"pyramid3d", 6}, 15, 4},
+                    Counts{{"pyramid2d", 16}, 14, 4}, Counts{{"pyramid3d", 6}, 11, 2},
                     Counts{{"wall", 11}, 12, 4}, Counts{{"spheres", 1000}, 15, 5}),
     [](const auto& tested) { return std::string(tested.param.spec.family); });
 
