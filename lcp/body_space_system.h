@@ -21,10 +21,12 @@ class BodySpaceSystem final : public ShiftedSystem {
   void multiply(const Vector& x, Vector& out) override;
   void solve(const Vector& h, Vector& dx) override;
 
+  [[nodiscard]] std::int64_t factor_bytes() const override {
+    return static_cast<std::int64_t>(cholesky_->counts().bytes);
+  }
   [[nodiscard]] const WhitenedRows& rows() const { return rows_; }
   /// u <- H^-1 u. @pre factor() returned true.
   void solve_in_body_space(Vector& u) { cholesky_->solve(u); }
-  [[nodiscard]] const SparseCholesky& cholesky() const { return *cholesky_; }
 
  protected:
   bool factor_new(const Vector& e, double proximal) override;

@@ -68,6 +68,15 @@ class GivenMatrixSystem final : public ShiftedSystem {
     }
   }
 
+  [[nodiscard]] std::int64_t factor_bytes() const override {
+    if (use_cholesky_) {
+      return static_cast<std::int64_t>(cholesky_->counts().bytes);
+    }
+    const std::int64_t numbers =
+        dense_ ? dense_lu_.matrixLU().size() : std::int64_t{sparse_lu_.nnzL()} + sparse_lu_.nnzU();
+    return numbers * static_cast<std::int64_t>(sizeof(double));
+  }
+
  protected:
   bool factor_new(const Vector& e, double proximal) override {
     fixed_.resize(e.size());

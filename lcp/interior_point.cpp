@@ -92,7 +92,9 @@ class InteriorPoint::Workspace {
     iterations_ = 0;
     const Status ending = run(warm_start);
     problem_.best_z(result.z);
-    result.statistics = {.iterations = iterations_, .factorizations = system.factorizations()};
+    result.statistics = {.iterations = iterations_,
+                         .factorizations = system.factorizations(),
+                         .factor_bytes = system.factorizations() > 0 ? system.factor_bytes() : 0};
     return ending;
   }
 

@@ -4,6 +4,7 @@
 #include <signorini/lcp/status.h>
 #include <signorini/lcp/types.h>
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,10 +13,12 @@ namespace signorini::lcp {
 
 /// What a solve cost. Counters start at -1: "this solver has no such thing".
 struct Statistics {
-  int iterations = -1;        ///< sweeps or outer iterations
-  int pivots = -1;            ///< exchanges of one basic variable
-  int factorizations = -1;    ///< of any matrix, from scratch
-  int refinements = -1;       ///< iterative refinement steps
+  int iterations = -1;      ///< sweeps or outer iterations
+  int pivots = -1;          ///< exchanges of one basic variable
+  int factorizations = -1;  ///< of any matrix, from scratch
+  int refinements = -1;     ///< iterative refinement steps
+  /// Held by the back-end of a sparse factorisation, whose allocations are not ours.
+  std::int64_t factor_bytes = -1;
   double solve_seconds = -1;  ///< wall time of solve(), certificate included
 };
 

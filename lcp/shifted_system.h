@@ -3,6 +3,7 @@
 #include <signorini/lcp/problem.h>
 #include <signorini/lcp/types.h>
 
+#include <cstdint>
 #include <memory>
 
 namespace signorini::lcp {
@@ -30,6 +31,8 @@ class ShiftedSystem {
   /// @pre factor() returned true.
   virtual void solve(const Vector& h, Vector& dx) = 0;
 
+  /// What the sparse back-end holds.
+  [[nodiscard]] virtual std::int64_t factor_bytes() const = 0;
   /// Factorisations since set().
   [[nodiscard]] int factorizations() const { return factorizations_; }
 

@@ -1,5 +1,7 @@
 #include <signorini/lcp/interior_point.h>
 
+#include "allocation_count.h"
+
 #include <bench/contact_families.h>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -33,6 +35,7 @@ TEST_P(InteriorPointOnFamilies, IsCertified) {
                                         << ", residual " << result.certificate.unit_free_residual;
   EXPECT_GE(result.z.minCoeff(), 0.0);
   EXPECT_LE(result.statistics.factorizations, 80);
+  EXPECT_GT(result.statistics.factor_bytes, 0);
 }
 
 TEST_P(InteriorPointOnFamilies, PolishReachesTheRoundingFloor) {
@@ -140,6 +143,8 @@ TEST(InteriorPoint, SolvingAgainGivesTheSameBits) {
   solver.solve(problem, second);
   EXPECT_EQ(first.z, second.z);
 }
+
+Problem perturbed(const Problem& problem, std::uint64_t seed);
 
 /// A family whose rows are made free (joints), boxed from both sides, bounded from above alone or
 /// fixed, in turn; 0 stays between the bounds, so that free fall is admissible.
@@ -287,6 +292,27 @@ INSTANTIATE_TEST_SUITE_P(
                     Counts{{"pyramid2d", 16}, 14, 4}, Counts{{"pyramid3d", 6}, 11, 2},
                     Counts{{"wall", 11}, 12, 4}, Counts{{"spheres", 1000}, 15, 5}),
     [](const auto& tested) { return std::string(tested.param.spec.family); });
+
+/// The second problem has the size and the contacts of the first, and other velocities; the third
+/// is the first again, from the second's answer.
+TEST_P(InteriorPointOnFamilies, SolvingAgainAllocatesNothing) {
+  const Problem problem = make_family(GetParam().spec);
+  const Problem other = perturbed(problem, 6);
+  const Problem bounded = bounded_family(GetParam().spec);
+  InteriorPoint solver;
+  Result result;
+  Result warm;
+  solver.solve(bounded, result);
+  solver.solve(problem, result);
+  solver.solve(problem, warm, &result.z);
+  const AllocationCount allocations;
+  solver.solve(other, result);
+  EXPECT_EQ(allocations.count(), 0) << "cold";
+  solver.solve(problem, warm, &result.z);
+  EXPECT_EQ(allocations.count(), 0) << "warm";
+  solver.solve(bounded, warm);
+  EXPECT_EQ(allocations.count(), 0) << "with bounds";
+}
 
 TEST(InteriorPoint, RefusesCoupledLimitsAndCones) {
   InteriorPoint solver;
