@@ -46,13 +46,18 @@ struct Case {
   Truth truth;
 };
 
+bool is_by_sweeps(std::string_view solver) {
+  return solver.find("pgs") != solver.npos || solver.starts_with("psor") ||
+         solver.starts_with("nncg");
+}
+
 class Study {
  public:
   explicit Study(const ExactnessOptions& options) : options_(options) {
     for (const std::string_view name : lcp::solver_names()) {
       lcp::SolverSettings settings;
       settings.tolerance = options.tolerance;
-      settings.max_iterations = name == "pgs" ? options.pgs_sweeps : -1;
+      settings.max_iterations = is_by_sweeps(name) ? options.pgs_sweeps : -1;
       solvers_.push_back(lcp::make_solver(name, settings));
     }
   }

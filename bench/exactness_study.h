@@ -18,7 +18,7 @@ struct ExactnessOptions {
   int problems = 100000;    ///< >= 0; the families take turns
   std::uint64_t seed = 1;   ///< problem k of a seed is the same whatever `problems` is
   double tolerance = 1e-8;  ///< of the solvers, and what `solved` is judged by. Dimensionless, > 0
-  int pgs_sweeps = 1000;    ///< PGS gives up here; a family it does not converge on costs time only
+  int pgs_sweeps = 1000;    ///< PGS, PSOR, NNCG give up here; slow convergence costs time only
 };
 
 /// One line of the table: how one solver ended on one family, and how often the problem had a
