@@ -7,6 +7,9 @@
 namespace signorini::lcp {
 namespace {
 
+constexpr int kAloneInARow = 32;  // rows on one block alone that a processor may have in flight
+constexpr int kTaskRecords = 16;  // some 0.2 microseconds of work
+
 /// To T; beyond its range an infinity, which is what a bound beyond it means.
 template <typename T>
 T narrow(double value) {
@@ -44,21 +47,32 @@ void PackedRows<T>::set(const FactoredMatrix& A, std::span<SweepRow> rows, doubl
   }
 }
 
-/// Gives every group its place and sizes what the groups are written to.
+/// Gives every group its place and sizes what the groups are written to. A run ends with its
+/// colour.
 template <typename T>
 void PackedRows<T>::make_runs() {
   runs_.clear();
+  blocks_.clear();
+  color_runs_.clear();
   std::size_t x_count = 0;
   std::size_t numbers = 0;
-  std::size_t blocks = 0;
   std::size_t normals = 0;
   std::size_t general = 0;
+  int alone = 0;       // rows on one block alone, of this colour
+  int most_alone = 0;  // of any colour
   const auto groups = groups_.groups();
+  const auto starts = groups_.color_starts();
   for (std::size_t k = 0; k < groups.size(); ++k) {
     const auto& group = groups[k];
-    const bool goes_on = !runs_.empty() && runs_.back().general == group.general &&
+    const bool starts_color =
+        color_runs_.size() < starts.size() && static_cast<int>(k) == starts[color_runs_.size()];
+    const bool goes_on = !starts_color && !runs_.empty() && runs_.back().general == group.general &&
                          (group.general || (runs_.back().records.form == group.form &&
                                             runs_.back().records.kind == group.kind));
+    if (starts_color) {
+      color_runs_.push_back(static_cast<int>(runs_.size()));
+      alone = 0;
+    }
     if (!goes_on) {
       x_count = padded(x_count, kLanes);
       Run run{};
@@ -68,7 +82,7 @@ void PackedRows<T>::make_runs() {
       run.general = group.general;
       run.first_group = static_cast<int>(k);
       run.numbers = group.general ? general : numbers;
-      run.blocks = blocks;
+      run.blocks = blocks_.size();
       run.normals = normals;
       runs_.push_back(run);
     }
@@ -81,17 +95,50 @@ void PackedRows<T>::make_runs() {
       ++general;
       continue;
     }
+    append_blocks(group, alone);
+    const bool is_rest = color_runs_.size() == starts.size();  // in one thread, one after the other
+    alone = is_rest ? alone % kAloneInARow : alone;
+    most_alone = std::max(most_alone, alone);
     numbers += record_layout(group.form, group.kind).size;
-    blocks += blocks_of(group.form);
     normals += group.kind == RowKind::kCoupled ? lanes_of(group.form) : 0;
   }
+  color_runs_.resize(starts.size(), static_cast<int>(runs_.size()));
   x_count_ = padded(x_count, kBlockStride);
-  state_.assign(x_count_ + scaled_.velocity_count(), T(0));
+  const int alone_blocks = std::max(most_alone + kLanes, kAloneInARow + kLanes);
+  state_.assign(x_count_ + scaled_.velocity_count() + kBlockStride * alone_blocks, T(0));
   w_.assign(x_count_, T(0));
   numbers_.assign(numbers, T(0));
-  blocks_.resize(blocks);
   normals_.assign(normals, -1);
   general_rows_.resize(general);
+  make_tasks();
+}
+
+/// The second block of a row on one block alone is one behind the others, which stays 0: another
+/// one for each such row of a colour, so that no two threads write it, and no row waits for another
+/// to have written its zeros.
+template <typename T>
+void PackedRows<T>::append_blocks(const RowGroups::Group& group, int& alone) {
+  for (int k = 0; k < blocks_of(group.form) / 2; ++k) {
+    const auto& row = scaled_.rows()[group.rows[k]];
+    blocks_.push_back(row.blocks[0]);
+    blocks_.push_back(row.blocks[1] >= 0 ? row.blocks[1]
+                                         : scaled_.velocity_count() + kBlockStride * alone++);
+  }
+}
+
+template <typename T>
+void PackedRows<T>::make_tasks() {
+  tasks_.clear();
+  color_tasks_.assign(1, 0);
+  for (std::size_t color = 0; color + 1 < color_runs_.size(); ++color) {
+    for (int run = color_runs_[color]; run < color_runs_[color + 1]; ++run) {
+      const int count = runs_[run].records.count;
+      for (int first = 0; first < count; first += kTaskRecords) {
+        tasks_.push_back({run, first, std::min(kTaskRecords, count - first)});
+      }
+    }
+    color_tasks_.push_back(static_cast<int>(tasks_.size()));
+  }
 }
 
 template <typename T>
@@ -104,15 +151,10 @@ void PackedRows<T>::fill(const Run& run, int record, const FactoredMatrix& A,
   }
   const RecordLayout at = record_layout(group.form, group.kind);
   T* numbers = numbers_.data() + run.numbers + static_cast<std::size_t>(at.size) * record;
-  std::int32_t* blocks = blocks_.data() + run.blocks + blocks_of(group.form) * record;
   const int count = rows_of(group.form);
   for (int r = 0; r < count; ++r) {
     const int row = group.rows[r];
-    const auto& scaled = scaled_.rows()[row];
-    scaled_.pack(scaled, numbers + kRowNumbers * r);
-    if (r == 0 || group.form == RowForm::kPacket) {
-      std::copy_n(scaled.blocks, 2, blocks + 2 * r);
-    }
+    scaled_.pack(scaled_.rows()[row], numbers + kRowNumbers * r);
     const GeneralRow data = general_row(row, A, rows, relaxation);
     numbers[at.q + r] = data.q;
     numbers[at.step + r] = data.step;
@@ -224,27 +266,77 @@ void PackedRows<T>::refresh(Vector& w) {
 
 template <typename T>
 void PackedRows<T>::forward() {
-  for (const Run& run : runs_) {
-    sweep(run, false);
-  }
+  sweep(false);
 }
 
 template <typename T>
 void PackedRows<T>::backward() {
-  for (auto run = runs_.rbegin(); run != runs_.rend(); ++run) {
-    sweep(*run, true);
-  }
+  sweep(true);
 }
 
 template <typename T>
-void PackedRows<T>::sweep(const Run& run, bool backward) {
-  if (!run.general) {
-    kernels_->sweep(run.records, u(), x(), backward);
+void PackedRows<T>::sweep(bool backward) {
+  if (team_ != nullptr && team_->size() > 1 && !tasks_.empty()) {
+    return sweep_on_team(backward);
+  }
+  const int count = static_cast<int>(runs_.size());
+  for (int k = 0; k < count; ++k) {
+    const Run& run = runs_[backward ? count - 1 - k : k];
+    sweep(run, 0, run.records.count, backward);
+  }
+}
+
+/// Colour by colour, each member of the team its share; then, or backwards before, the rest.
+template <typename T>
+void PackedRows<T>::sweep_on_team(bool backward) {
+  const auto sweep_rest = [&](int member) {
+    const int rest = color_runs_.back();
+    const int count = static_cast<int>(runs_.size()) - rest;
+    for (int k = 0; member == 0 && k < count; ++k) {
+      const Run& run = runs_[rest + (backward ? count - 1 - k : k)];
+      sweep(run, 0, run.records.count, backward);
+    }
+  };
+  auto work = [&](int member) {
+    if (backward) {
+      sweep_rest(member);
+      team_->wait();
+    }
+    const int colors = color_count();
+    for (int c = 0; c < colors; ++c) {
+      const int color = backward ? colors - 1 - c : c;
+      const std::int64_t first = color_tasks_[color];
+      const std::int64_t count = color_tasks_[color + 1] - first;
+      for (std::int64_t k = first + count * member / team_->size();
+           k < first + count * (member + 1) / team_->size(); ++k) {
+        sweep(runs_[tasks_[k].run], tasks_[k].first, tasks_[k].count, backward);
+      }
+      team_->wait();
+    }
+    if (!backward) {
+      sweep_rest(member);
+    }
+  };
+  team_->run(work);
+}
+
+/// `count` records of a run.
+template <typename T>
+void PackedRows<T>::sweep(const Run& run, int first, int count, bool backward) {
+  if (run.general) {
+    for (int k = 0; k < count; ++k) {
+      step_general(general_rows_[run.numbers + first + (backward ? count - 1 - k : k)]);
+    }
     return;
   }
-  for (int k = 0; k < run.records.count; ++k) {
-    step_general(general_rows_[run.numbers + (backward ? run.records.count - 1 - k : k)]);
-  }
+  RowRun<T> part = run.records;
+  const std::ptrdiff_t lanes = lanes_of(part.form);
+  part.numbers += std::ptrdiff_t{record_layout(part.form, part.kind).size} * first;
+  part.blocks += std::ptrdiff_t{blocks_of(part.form)} * first;
+  part.normals = part.normals == nullptr ? nullptr : part.normals + lanes * first;
+  part.first += static_cast<std::int32_t>(lanes * first);
+  part.count = count;
+  kernels_->sweep(part, u(), x(), backward);
 }
 
 /// w of a row.

@@ -4,6 +4,7 @@
 #include <signorini/lcp/row_groups.h>
 #include <signorini/lcp/scaled_rows.h>
 #include <signorini/lcp/sweeps.h>
+#include <signorini/lcp/thread_team.h>
 
 #include <cstdint>
 #include <new>
@@ -36,8 +37,8 @@ using CacheLineVector = std::vector<T, CacheLines<T>>;
 /// each other, so that a row waits for three operations of the row before it and not for a whole
 /// product. Other rows take a plain loop.
 ///
-/// The bits of a sweep do not depend on the instruction set. kNatural and kColoured differ as two
-/// orders of Gauss-Seidel do.
+/// The bits of a sweep depend neither on the instruction set (but kFma) nor on the number of
+/// threads. kNatural and kColoured differ as two orders of Gauss-Seidel do.
 template <typename T>
 class PackedRows final : public Sweeps<T> {
  public:
@@ -47,6 +48,10 @@ class PackedRows final : public Sweeps<T> {
   /// @param relaxation omega in (0, 2)
   void set(const FactoredMatrix& A, std::span<SweepRow> rows, double relaxation, RowOrder order,
            InstructionSet instructions = best_instruction_set());
+
+  /// From now on the rows of a colour are shared out among the team; natural order is not. Null:
+  /// the caller's thread alone, as at the beginning. The team must live as long as it is used.
+  void use(ThreadTeam* team) { team_ = team; }
 
   void start(const Vector& z) override;
   void forward() override;
@@ -69,6 +74,12 @@ class PackedRows final : public Sweeps<T> {
     int first_group;
     std::size_t numbers, blocks, normals;  // where the records' start
   };
+  /// Records of a run that one thread takes at a time.
+  struct Task {
+    int run;
+    int first;
+    int count;
+  };
   struct GeneralRow {
     T q, inverse, step, lower, upper, compliance;
     int row;
@@ -76,6 +87,8 @@ class PackedRows final : public Sweeps<T> {
   };
 
   void make_runs();
+  void append_blocks(const RowGroups::Group& group, int& alone);
+  void make_tasks();
   void fill(const Run& run, int record, const FactoredMatrix& A, std::span<const SweepRow> rows,
             double relaxation);
   void fill_columns(T* record, const RecordLayout& at, int count);
@@ -84,7 +97,9 @@ class PackedRows final : public Sweeps<T> {
   [[nodiscard]] T general_product(const GeneralRow& row) const;
   void step_general(const GeneralRow& row);
   void add_general(const GeneralRow& row, T change);
-  void sweep(const Run& run, bool backward);
+  void sweep(const Run& run, int first, int count, bool backward);
+  void sweep(bool backward);
+  void sweep_on_team(bool backward);
   [[nodiscard]] T* x() { return state_.data(); }
   [[nodiscard]] T* u() { return state_.data() + x_count_; }
 
@@ -96,6 +111,10 @@ class PackedRows final : public Sweeps<T> {
   std::vector<int> place_;       // of a row's x
   std::vector<double> unscale_;  // 1 / (kappa s_i)
   std::vector<Run> runs_;
+  std::vector<int> color_runs_;  // the first run of every colour, then that of the rest
+  std::vector<Task> tasks_;      // of the colours
+  std::vector<int> color_tasks_;
+  ThreadTeam* team_ = nullptr;
   CacheLineVector<T> numbers_;
   std::vector<std::int32_t> blocks_;
   std::vector<std::int32_t> normals_;

@@ -94,7 +94,6 @@ void ScaledRows::place_blocks(const BlockMass& mass) {
     }
     Eigen::Map<Matrix>(&roots_[root_start_[b]], d, d).transposeInPlace();
   }
-  velocity_count_ += kNoBlocks * kBlockStride;
 }
 
 /// The entries of row i, not yet divided by s_i. @return A_ii.
@@ -139,10 +138,8 @@ void ScaledRows::scale(int i, const SweepRow& data, double compliance) {
                                   : RowKind::kBounded;
   if (!row.general) {
     row.blocks[0] = mine[0].offset;
-    row.blocks[1] = mine.size() > 1
-                        ? mine[1].offset
-                        : velocity_count_ - kBlockStride * (1 + mine[0].block % kNoBlocks);
-    if (row.blocks[0] > row.blocks[1]) {
+    row.blocks[1] = mine.size() > 1 ? mine[1].offset : -1;
+    if (mine.size() > 1 && row.blocks[0] > row.blocks[1]) {
       std::swap(row.blocks[0], row.blocks[1]);
     }
   }

@@ -25,7 +25,8 @@ class ScaledRows {
     /// Not on at most two blocks of at most six numbers with a root, or without a usable A_ii.
     bool general;
     RowKind kind;
-    std::int32_t blocks[2];  ///< where they start in u, the lower first; unless general
+    std::int32_t blocks[2];  ///< where they start in u, the lower first; the second -1 if there is
+                             ///< only one; unless general
     int first_entry;         ///< in entries()
     int last_entry;
     double scale;  ///< s_i
@@ -50,10 +51,7 @@ class ScaledRows {
   }
   [[nodiscard]] const double* numbers() const { return numbers_.data(); }
   [[nodiscard]] double kappa() const { return kappa_; }
-  /// Numbers of u: the blocks, each padded to a multiple of kBlockStride, and kNoBlocks blocks that
-  /// are always 0, the second blocks of rows on one block alone. Several, or each such row would
-  /// wait for the one before it to have written its zeros.
-  static constexpr int kNoBlocks = 32;
+  /// Numbers of u: the blocks, each padded to a multiple of kBlockStride.
   [[nodiscard]] int velocity_count() const { return velocity_count_; }
   [[nodiscard]] int block_count() const { return static_cast<int>(offset_.size()); }
 

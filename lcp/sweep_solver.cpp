@@ -126,10 +126,11 @@ template <typename T>
 class Forms {
  public:
   Sweeps<T>& set(const Problem& problem, std::vector<SweepRow>& rows, double relaxation,
-                 const SweepSettings& settings) {
+                 const SweepSettings& settings, ThreadTeam* team) {
     if (const auto* factored = std::get_if<FactoredMatrix>(&problem.M)) {
       packed_.set(*factored, rows, relaxation, settings.row_order,
                   best_instruction_set(settings.fused));
+      packed_.use(team);
       return packed_;
     }
     columns_.set(problem.M, rows, relaxation);
@@ -151,12 +152,15 @@ class SweepSolver::Workspace {
     take_rows(problem);
     const SweepSettings& settings = solver.sweep_settings();
     const double relaxation = solver.relaxation();
-    if (settings.precision == Precision::kFloat) {
-      return run(solver, single_.set(problem, rows_, relaxation, settings), problem, warm_start,
-                 deadline, result);
+    if (settings.threads > 1 && team_ == nullptr) {
+      team_ = std::make_unique<ThreadTeam>(settings.threads);
     }
-    return run(solver, double_.set(problem, rows_, relaxation, settings), problem, warm_start,
-               deadline, result);
+    if (settings.precision == Precision::kFloat) {
+      return run(solver, single_.set(problem, rows_, relaxation, settings, team_.get()), problem,
+                 warm_start, deadline, result);
+    }
+    return run(solver, double_.set(problem, rows_, relaxation, settings, team_.get()), problem,
+               warm_start, deadline, result);
   }
 
  private:
@@ -173,6 +177,7 @@ class SweepSolver::Workspace {
   template <typename T>
   Status end(Sweeps<T>& sweeps, Status status, std::string why, Result& result);
 
+  std::unique_ptr<ThreadTeam> team_;
   Forms<double> double_;
   Forms<float> single_;
   std::vector<SweepRow> rows_;
@@ -345,6 +350,9 @@ void SweepSettings::validate() const {
   if (check_period < 1) {
     throw std::invalid_argument("settings: check_period: must be >= 1, got " +
                                 std::to_string(check_period));
+  }
+  if (threads < 1) {
+    throw std::invalid_argument("settings: threads: must be >= 1, got " + std::to_string(threads));
   }
 }
 

@@ -30,6 +30,11 @@ struct SweepSettings : SolverSettings {
   /// Pgs needs as many sweeps on piles of spheres and up to 40 % fewer on pyramids listed from the
   /// ground up, so that coloured ends first; tall towers are the exception (a third of the sweeps).
   RowOrder row_order = RowOrder::kColoured;
+  /// Threads that share the rows of a colour, >= 1; the bits are the same for any number. Only for
+  /// factored problems in coloured order, and only worth it for many thousand rows: members of the
+  /// team meet after every colour, and looks at the residual take one thread. The threads live as
+  /// long as the solver.
+  int threads = 1;
   /// Lets a processor that can multiply and add in one operation do so: 1.15 (natural) to 1.4 times
   /// (coloured) as fast over factored problems, but then the bits depend on the processor.
   bool fused = false;

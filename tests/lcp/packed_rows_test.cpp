@@ -76,6 +76,7 @@ std::vector<Named> all_kinds() {
         {"Coupled" + number, {.rows_a_pair = rows_a_pair, .compliant = true, .coupled = true}});
   }
   kinds.push_back({"Wide", {.bodies = 60, .rows = 150}});
+  kinds.push_back({"VeryWide", {.bodies = 900, .rows = 3000, .rows_a_pair = 2, .coupled = true}});
   kinds.push_back({"WideBounded", {.bodies = 60, .rows = 150, .bounded = true}});
   kinds.push_back({"Articulated", {.bodies = 9, .articulated = true, .bounded = true}});
   kinds.push_back({"ArticulatedCoupled", {.bodies = 9, .articulated = true, .coupled = true}});
@@ -93,8 +94,9 @@ class PackedRowsOfKind : public testing::TestWithParam<Named> {};
 INSTANTIATE_TEST_SUITE_P(Kinds, PackedRowsOfKind, testing::ValuesIn(all_kinds()),
                          [](const auto& kind) { return kind.param.name; });
 
-/// Both do the arithmetic of Gauss-Seidel in the caller's order; three sweeps of at most 150 rows,
-/// each sum of 40 products off by eps |M||z|, leave 3 * 150 * 40 eps = 4e-12 of the largest number.
+/// Both do the arithmetic of Gauss-Seidel in the caller's order; three sweeps of at most 150 rows
+/// that follow from each other, each sum of 40 products off by eps |M||z|, leave 3 * 150 * 40 eps =
+/// 4e-12 of the largest number.
 TEST_P(PackedRowsOfKind, SweepTheFormedMatrixInTheCallersOrder) {
   const Problem problem = sweep_problem(GetParam().spec);
   auto rows = rows_of(problem);
@@ -121,6 +123,21 @@ TEST_P(PackedRowsOfKind, GiveTheSameBitsOnEveryInstructionSetButTheFused) {
       }
       EXPECT_EQ(of_set, in_double) << to_string(set);
       EXPECT_EQ(swept<float>(problem, order, set), in_float) << to_string(set);
+    }
+  }
+}
+
+TEST_P(PackedRowsOfKind, GiveTheSameBitsOnAnyNumberOfThreads) {
+  const Problem problem = sweep_problem(GetParam().spec);
+  for (const RowOrder order : {RowOrder::kNatural, RowOrder::kColoured}) {
+    const Vector alone = swept<double>(problem, order);
+    for (const int threads : {2, 3, 4}) {
+      ThreadTeam team(threads);
+      auto rows = rows_of(problem);
+      PackedRows<double> packed;
+      packed.set(matrix_of(problem), rows, 1.1, order);
+      packed.use(&team);
+      EXPECT_EQ(swept(packed, problem.size()), alone) << threads << " threads";
     }
   }
 }

@@ -164,6 +164,28 @@ TEST_P(SweepSolvers, UsedAgainGiveTheBitsOfAFreshSolver) {
   }
 }
 
+TEST_P(SweepSolvers, AnyNumberOfThreadsGivesTheSameBits) {
+  const Problem problem =
+      sweep_problem({.bodies = 80, .rows = 240, .rows_a_pair = 3, .coupled = true, .seed = 20});
+  for (const Precision precision : {Precision::kDouble, Precision::kFloat}) {
+    SweepSettings starved = settings(precision);
+    starved.max_iterations = 20;
+    starved.tolerance = 1e-13;
+    const Result alone = solve(problem, starved);
+    for (const int threads : {2, 3}) {
+      starved.threads = threads;
+      const auto solver = GetParam().make(starved);
+      Result result;
+      solver->solve(problem, result);
+      EXPECT_EQ(result.z, alone.z) << threads << " threads";
+      const AllocationCount allocations;
+      solver->solve(problem, result);
+      EXPECT_EQ(allocations.count(), 0);
+      EXPECT_EQ(result.z, alone.z);
+    }
+  }
+}
+
 TEST_P(SweepSolvers, WarmStartFromTheSolutionTakesNoIteration) {
   const Problem problem = sweep_problem({.seed = 14});
   for (const Precision precision : {Precision::kDouble, Precision::kFloat}) {
@@ -290,6 +312,10 @@ TEST(SweepSettings, OutOfRangeAreNamed) {
   NncgSettings nncg;
   nncg.check_period = 0;
   EXPECT_NE(message([](const auto& s) { Nncg{s}; }, nncg).find("check_period: must be >= 1, got 0"),
+            std::string::npos);
+  nncg = {};
+  nncg.threads = 0;
+  EXPECT_NE(message([](const auto& s) { Nncg{s}; }, nncg).find("threads: must be >= 1, got 0"),
             std::string::npos);
 }
 
