@@ -221,6 +221,29 @@ TEST(NestedDissection, OrdersEveryNodeOnce) {
   }
 }
 
+TEST(VertexSeparator, NoEdgeJoinsTheParts) {
+  VertexSeparator separator;
+  std::vector<CutSide> side;
+  for (const auto& [nodes, dimensions] : {std::pair(200, 1), {25, 2}, {40, 2}, {11, 3}}) {
+    const Graph graph = grid(nodes, dimensions);
+    ASSERT_TRUE(separator.find(graph, side)) << nodes << "^" << dimensions;
+    int weight[3] = {0, 0, 0};
+    for (int k = 0; k < graph.nodes(); ++k) {
+      weight[static_cast<int>(side[k])] += graph.weight[k];
+      for (int e = graph.start[k]; e < graph.start[k + 1]; ++e) {
+        const CutSide other = side[graph.neighbours[e]];
+        EXPECT_TRUE(side[k] == other || side[k] == CutSide::kSeparator ||
+                    other == CutSide::kSeparator);
+      }
+    }
+    const int total = weight[0] + weight[1] + weight[2];
+    EXPECT_LE(std::max(weight[0], weight[1]), 0.6 * total);
+    // A plane across the grid has nodes^(dimensions - 1) nodes of weight 2.
+    EXPECT_LE(weight[2], 1.5 * 2.0 * std::pow(nodes, dimensions - 1) + 1.0)
+        << nodes << "^" << dimensions;
+  }
+}
+
 TEST(NestedDissection, BeatsMinimumDegreeInSpaceAndNotOnALine) {
   NestedDissection dissection;
   const auto flops = [&](const Graph& graph, bool dissect) {
