@@ -21,6 +21,7 @@ class BodySpaceSystem final : public ShiftedSystem {
   void multiply(const Vector& x, Vector& out) override;
   void solve(const Vector& h, Vector& dx) override;
 
+  [[nodiscard]] double factor_cost() const override;
   [[nodiscard]] std::int64_t factor_bytes() const override {
     return static_cast<std::int64_t>(cholesky_->counts().bytes);
   }

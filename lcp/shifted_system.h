@@ -31,6 +31,8 @@ class ShiftedSystem {
   /// @pre factor() returned true.
   virtual void solve(const Vector& h, Vector& dx) = 0;
 
+  /// How many solves a factorisation costs, roughly, from counts of its flops.
+  [[nodiscard]] virtual double factor_cost() const { return 1.0; }
   /// What the sparse back-end holds.
   [[nodiscard]] virtual std::int64_t factor_bytes() const = 0;
   /// Factorisations since set().
