@@ -2,13 +2,14 @@
 
 #include <signorini/lcp/solver.h>
 
+#include "bench/stopwatch.h"
+
 #include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
 #include <BulletDynamics/ConstraintSolver/btNNCGConstraintSolver.h>
 #include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
 #include <BulletDynamics/MLCPSolvers/btLemkeSolver.h>
 #include <BulletDynamics/MLCPSolvers/btMLCPSolver.h>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <fmt/format.h>
@@ -22,13 +23,7 @@
 namespace signorini::bench {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr double kTimeStep = 1.0 / 60.0;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// The numbers of a run that a child sends home; plain bytes.
 struct Report {
@@ -140,9 +135,9 @@ Solver our_solver(std::string_view name, double tolerance) {
             return [&group, work](Report& report) {
               Workspace& w = *work;
               w.set.read(group);
-              const Clock::time_point start = Clock::now();
+              const Stopwatch stopwatch;
               w.solver->solve(w.set.asked(), w.result);
-              report.solve_seconds = seconds_since(start);
+              report.solve_seconds = stopwatch.seconds();
               w.set.write(group, w.result.z);
               report.set_outcome(lcp::to_string(w.result.status));
             };
@@ -186,9 +181,9 @@ std::string run_in_this_process(const Solver& solver, const BulletGroup& group,
     start.restore(group);
     forget_impulses(group);
     Report once;
-    const Clock::time_point begin = Clock::now();
+    const Stopwatch stopwatch;
     call(once);
-    once.seconds = seconds_since(begin);
+    once.seconds = stopwatch.seconds();
     if (once.seconds < report.seconds) {
       report = once;
     }

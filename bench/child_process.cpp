@@ -1,11 +1,11 @@
 #include "bench/child_process.h"
 
-#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdint>
 #include <cstring>
+#include <ctime>
 #include <exception>
 #include <fcntl.h>
 #include <fstream>
@@ -161,20 +161,44 @@ std::string describe_status(int status) {
   return "exit " + std::to_string(WEXITSTATUS(status)) + " without an answer";
 }
 
+/// CPU seconds that a process has used; 0 where the system does not tell.
+double cpu_seconds(pid_t process) {
+  clockid_t clock;
+  timespec time = {};
+  if (::clock_getcpuclockid(process, &clock) != 0 || ::clock_gettime(clock, &time) != 0) {
+    return 0.0;
+  }
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/// How much of its time a child has used since the start of a phase.
+class Allowance {
+ public:
+  Allowance(pid_t child, double seconds)
+      : child_(child), seconds_(seconds), start_(Clock::now()), cpu_start_(cpu_seconds(child)) {}
+  [[nodiscard]] bool is_used_up() const {
+    const std::chrono::duration<double> wall = Clock::now() - start_;
+    return cpu_seconds(child_) - cpu_start_ > seconds_ || wall.count() > kWallTimes * seconds_;
+  }
+
+ private:
+  pid_t child_;
+  double seconds_;
+  Clock::time_point start_;
+  double cpu_start_;
+};
+
 /// Listens until the child has answered, ended or used up its time.
-ChildAnswer listen(int pipe, const ChildLimits& limits) {
+ChildAnswer listen(int pipe, pid_t child, const ChildLimits& limits) {
   ChildAnswer result;
   result.reason.clear();
   std::string arrived;
-  Clock::time_point deadline =
-      Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                         std::chrono::duration<double>(limits.loading_seconds));
+  Allowance allowance(child, limits.loading_seconds);
   while (true) {
     while (std::optional<Message> message = take_message(arrived)) {
       if (message->kind == kLoaded) {
         result.is_loaded = true;
-        deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                      std::chrono::duration<double>(limits.seconds));
+        allowance = Allowance(child, limits.seconds);
         continue;
       }
       result.end = message->kind == kAnswer ? ChildEnd::kAnswered : ChildEnd::kCrashed;
@@ -185,16 +209,14 @@ ChildAnswer listen(int pipe, const ChildLimits& limits) {
       result.end = ChildEnd::kInterrupted;
       return result;
     }
-    const auto left =
-        std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now());
-    if (left.count() <= 0) {
+    if (allowance.is_used_up()) {
       result.end = ChildEnd::kTimedOut;
       result.reason = result.is_loaded ? "time limit" : "time limit while loading";
       return result;
     }
+    constexpr int kGlanceMilliseconds = 50;  // at the clocks and at signals
     pollfd wait = {pipe, POLLIN, 0};
-    // At most 100 ms, so that a signal between the check and the wait is seen soon.
-    if (::poll(&wait, 1, static_cast<int>(std::min<long>(left.count() + 1, 100))) <= 0) {
+    if (::poll(&wait, 1, kGlanceMilliseconds) <= 0) {
       continue;
     }
     char bytes[65536];
@@ -236,7 +258,7 @@ ChildAnswer run_in_child(const ChildWork& work, const ChildLimits& limits) {
     run_child(work, limits, write_end.number(), parent);
   }
   write_end.close();
-  ChildAnswer result = listen(read_end.number(), limits);
+  ChildAnswer result = listen(read_end.number(), child, limits);
   ::kill(child, SIGKILL);  // it has answered, or it never will; no effect on one that has died
   const int status = wait_for(child);
   if (result.end == ChildEnd::kCrashed && result.reason.empty()) {

@@ -1,8 +1,9 @@
 #include "bench/peer_runner.h"
 
+#include "bench/stopwatch.h"
+
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -107,9 +108,9 @@ bool meets(const lcp::Certificate& certificate, double tolerance) {
 
 double solve_once(Peer& peer, PeerAnswer& answer) {
   peer.rewind();
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch stopwatch;
   peer.solve(answer);
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return stopwatch.seconds();
 }
 
 TimedAnswer solve_repeatedly(Peer& peer, const RunLimits& limits) {
@@ -228,6 +229,7 @@ PeerRun run_peer(const PeerEntry& entry, const lcp::Problem& given, const lcp::P
   const bool is_finite = is_answer(timed.answer.z, judged);
   if (is_finite) {
     run.certificate = lcp::certify(judged, timed.answer.z);
+    run.z = timed.answer.z;
   }
   run.verdict = judge_answer(run.certificate, is_finite, run.claim, settings.tolerance);
   return run;

@@ -47,8 +47,11 @@ struct PeerRun {
   Claim claim = Claim::kNothing;
   std::string said;              ///< the solver's word, or why there is none
   lcp::Certificate certificate;  ///< of its answer; NaN if there is none
-  double seconds = -1.0;         ///< of the fastest solve, with all memory warm; -1: none ended
-  double first_seconds = -1.0;   ///< of the first one
+  lcp::Vector z;                 ///< its answer, n finite numbers, or empty
+  /// Of the fastest solve, with all memory warm: wall time, or the process's CPU time where that is
+  /// less, because others had the processor; -1: none ended.
+  double seconds = -1.0;
+  double first_seconds = -1.0;  ///< of the first one
   int repeats = 0;
   int iterations = -1;
   int pivots = -1;

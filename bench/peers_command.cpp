@@ -107,7 +107,9 @@ PeersCommand::PeersCommand(CLI::App& app) : options_(std::make_unique<Options>()
       ->check(CLI::Range(1e-15, 0.9))
       ->capture_default_str();
   o.study.limits.child.seconds = 20.0;
-  command_->add_option("--time-limit", o.study.limits.child.seconds, "Seconds a solver and problem")
+  command_
+      ->add_option("--time-limit", o.study.limits.child.seconds,
+                   "Seconds of CPU time a solver and problem")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command_->add_option("--memory", o.memory_gib, "GiB a solver and problem")
@@ -156,7 +158,7 @@ int PeersCommand::run() const {
     o.problems.at_rest = true;
   }
   o.study.regularised = !o.without_regularised;
-  o.study.settings.time_limit = o.study.limits.child.seconds;
+  o.study.settings.time_limit = kWallTimes * o.study.limits.child.seconds;
   o.study.limits.child.loading_seconds = o.study.limits.child.seconds + 60.0;
   o.study.limits.child.bytes = static_cast<std::size_t>(o.memory_gib * 1024.0 * 1024.0 * 1024.0);
   const std::vector<PeerProblem> problems = peer_problems(o.problems);
@@ -169,7 +171,8 @@ int PeersCommand::run() const {
   const bool is_watched = ::isatty(STDERR_FILENO) != 0;
   const PeersResult result =
       run_peers_study(problems, entries, o.study, is_watched ? &std::cerr : nullptr);
-  fmt::print("{}\n", peers_text(result));
+  fmt::print("{}{}\n", peers_text(result),
+             result.is_interrupted ? "\ninterrupted: what follows was not run\n" : "");
   for (const std::string& line : peers_legend()) {
     fmt::print("{}\n", line);
   }

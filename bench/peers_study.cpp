@@ -1,9 +1,12 @@
 #include "bench/peers_study.h"
 
+#include "bench/factorization_floor.h"
+
 #include <algorithm>
 #include <fmt/format.h>
 #include <ostream>
 #include <set>
+#include <span>
 #include <stdexcept>
 
 namespace signorini::bench {
@@ -69,12 +72,34 @@ PeerRun not_asked(Verdict verdict, std::string why) {
   return run;
 }
 
+/// Measures the floor with the most accurate of the solutions, and forgets all of them.
+void set_floor(const lcp::Problem& problem, std::span<PeersRow> rows) {
+  const PeersRow* best = nullptr;
+  for (const PeersRow& row : rows) {
+    if (row.run.verdict == Verdict::kSolved &&
+        (best == nullptr ||
+         row.run.certificate.natural_residual < best->run.certificate.natural_residual)) {
+      best = &row;
+    }
+  }
+  const auto* A = std::get_if<lcp::FactoredMatrix>(&problem.M);
+  double seconds = -1.0;
+  if (best != nullptr && A != nullptr && problem.is_lcp() && (best->run.z.array() > 0.0).any()) {
+    seconds = measure_factorization_floor(*A, best->run.z, reference_back_end()).seconds;
+  }
+  for (PeersRow& row : rows) {
+    row.floor_seconds = seconds;
+    row.run.z.resize(0);
+  }
+}
+
 class Study {
  public:
-  Study(const PeersOptions& options, std::ostream* progress)
-      : options_(options), progress_(progress) {}
+  Study(const PeersOptions& options, std::size_t problem_count, std::ostream* progress)
+      : options_(options), problem_count_(problem_count), progress_(progress) {}
 
   void run(const PeerProblem& problem, const std::vector<Contestant>& all, PeersResult& result) {
+    ++problem_number_;
     GivenProblem given{.judged = problem.make(), .regularised = {}};
     for (const Contestant& contestant : all) {
       PeersRow row;
@@ -87,7 +112,8 @@ class Study {
       row.at_rest = problem.at_rest;
       row.solver = contestant.name();
       row.library = contestant.entry.library;
-      show(fmt::format("{} ({} rows): {}", problem.name, row.n, row.solver));
+      show(fmt::format("{} of {}: {} ({} rows): {}", problem_number_, problem_count_, problem.name,
+                       row.n, row.solver));
       row.run = run_one(problem, contestant, given);
       if (row.run.verdict == Verdict::kInterrupted) {
         result.is_interrupted = true;
@@ -95,6 +121,9 @@ class Study {
       }
       result.rows.push_back(std::move(row));
     }
+    show(fmt::format("{}: the floor", problem.name));
+    const auto first = result.rows.end() - static_cast<std::ptrdiff_t>(all.size());
+    set_floor(given.judged, {first, result.rows.end()});
   }
 
   void show(const std::string& line) {
@@ -122,6 +151,8 @@ class Study {
   }
 
   const PeersOptions& options_;
+  std::size_t problem_count_;
+  std::size_t problem_number_ = 0;
   std::ostream* progress_;
   std::set<std::pair<std::string, std::string>> too_slow_;  // series and solver
 };
@@ -140,7 +171,7 @@ PeersResult run_peers_study(const std::vector<PeerProblem>& problems,
                             std::ostream* progress) {
   const std::vector<Contestant> all = contestants(entries, options);
   PeersResult result;
-  Study study(options, progress);
+  Study study(options, problems.size(), progress);
   for (const PeerProblem& problem : problems) {
     study.run(problem, all, result);
     if (result.is_interrupted) {

@@ -10,6 +10,7 @@
 
 namespace signorini::bench {
 
+/// What takes part, and how.
 struct PeersOptions {
   std::vector<std::string> solvers;  ///< names; empty: all
   bool regularised = true;           ///< also NAME+reg for every Dantzig, see kRegularisation
@@ -30,7 +31,9 @@ struct PeersRow {
   std::string solver;
   std::string library;
   PeerRun run;
-  /// Seconds of one sparse analyse, factor and solve of the problem's active set; -1: not measured.
+  /// Seconds of one sparse analyse, factor and solve of the problem's active set
+  /// (factorization_floor.h); -1: not measured, because nobody solved the problem or it is not an
+  /// LCP in factored form.
   double floor_seconds = -1.0;
 };
 

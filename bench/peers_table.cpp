@@ -80,6 +80,24 @@ std::vector<Grid> grids(const PeersResult& result) {
   return all;
 }
 
+/// The floor's line and the line of the fastest solver's ratio to it, or nothing if no problem of
+/// the table has one: name, then one cell a problem.
+std::vector<std::vector<std::string>> floor_lines(const Grid& grid) {
+  std::vector<std::string> floors = {"(floor)"};
+  std::vector<std::string> ratios = {"(best / floor)"};
+  bool has_any = false;
+  for (const std::string& problem : grid.problems) {
+    double floor = -1.0;
+    for (const auto& [key, row] : grid.cells) {
+      floor = key.second == problem ? std::max(floor, row->floor_seconds) : floor;
+    }
+    has_any = has_any || floor > 0.0;
+    floors.push_back(floor > 0.0 ? short_time(floor) : "");
+    ratios.push_back(floor > 0.0 ? fmt::format("{:.1f}", grid.best(problem) / floor) : "");
+  }
+  return has_any ? std::vector{floors, ratios} : std::vector<std::vector<std::string>>{};
+}
+
 std::string cell(const PeersRow* row) {
   if (row == nullptr) {
     return "";
@@ -164,7 +182,7 @@ std::string peers_csv(const PeersResult& result) {
 std::string peers_text(const PeersResult& result) {
   std::string text;
   for (const Grid& grid : grids(result)) {
-    std::size_t name_width = grid.title.size();
+    std::size_t name_width = std::max<std::size_t>(grid.title.size(), 14);
     for (const std::string& solver : grid.solvers) {
       name_width = std::max(name_width, solver.size());
     }
@@ -183,6 +201,13 @@ std::string peers_text(const PeersResult& result) {
       }
       text += "\n";
     }
+    for (const std::vector<std::string>& line : floor_lines(grid)) {
+      text += padded(line[0], name_width, true);
+      for (std::size_t p = 0; p < grid.problems.size(); ++p) {
+        text += fmt::format("  {}", padded(line[p + 1], widths[p], false));
+      }
+      text += "\n";
+    }
   }
   return text;
 }
@@ -190,7 +215,8 @@ std::string peers_text(const PeersResult& result) {
 std::vector<std::string> peers_legend() {
   return {
       "time: the fastest of at least five solves in one process, after the library's own data were "
-      "made from the problem (not timed); solves above 0.1 s are timed once",
+      "made from the problem (not timed); wall time, or CPU time where that is less; solves above "
+      "0.1 s are timed once",
       "solved: max|min(z, w)| / (1 + |q|) (of a bounded row: its projection) within the tolerance, "
       "or within four rounding floors; recomputed in long double on the problem given, also where "
       "the solver got A_ii (1 + 1e-10) (+reg)",
@@ -199,7 +225,9 @@ std::vector<std::string> peers_legend() {
       "T: time limit (or out of time on a smaller one of the series); C: crashed",
       "R=: what is left at the sweep limit of a method that says nothing of its answer; such a "
       "method's time is that of the first number of sweeps, doubling from 8, that is enough",
-      "-: cannot take the problem"};
+      "-: cannot take the problem",
+      "floor: one sparse analyse, factor and solve of the active set, CPU time (CHOLMOD); best / "
+      "floor: the fastest solver's time over it"};
 }
 
 std::string peers_markdown(const PeersResult& result, const std::vector<std::string>& remarks) {
@@ -228,6 +256,13 @@ std::string peers_markdown(const PeersResult& result, const std::vector<std::str
         const bool is_best = row != nullptr && row->run.verdict == Verdict::kSolved &&
                              row->run.seconds <= grid.best(problem);
         text += is_best ? fmt::format(" **{}** |", cell(row)) : fmt::format(" {} |", cell(row));
+      }
+      text += "\n";
+    }
+    for (const std::vector<std::string>& line : floor_lines(grid)) {
+      text += "|";
+      for (const std::string& one : line) {
+        text += fmt::format(" {} |", one);
       }
       text += "\n";
     }

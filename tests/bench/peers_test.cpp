@@ -366,7 +366,7 @@ TEST(PeersStudy, EndsWithTheRightTable) {
   ASSERT_EQ(result.rows.size(), 8u);
   EXPECT_FALSE(result.is_interrupted);
   EXPECT_EQ(result.wrong_of_ours(), 0);  // they are not ours
-  EXPECT_NE(progress.str().find("two (4 rows): hanger"), std::string::npos);
+  EXPECT_NE(progress.str().find("2 of 2: two (4 rows): hanger"), std::string::npos);
   EXPECT_EQ(result.rows[7].run.said, "not asked: out of time on a smaller one");
 
   const std::string text = peers_text(result);
@@ -394,6 +394,20 @@ TEST(PeersStudy, EndsWithTheRightTable) {
     EXPECT_EQ(commas(line), commas(header)) << line;
   }
   EXPECT_NE(peers_markdown(result, {"here"}).find("| liar | W | W |"), std::string::npos);
+}
+
+TEST(PeersStudy, TheFloorIsMeasuredOnSolvedFactoredProblems) {
+  PeersOptions options;
+  options.solvers = {"lemke"};
+  const auto problems = peer_problems(
+      {.families = {"spheres", "psd"}, .forms = {"lcp", "box"}, .sizes = {16}, .folders = {}});
+  const PeersResult result = run_peers_study(problems, all_peers(), options, nullptr);
+  ASSERT_EQ(result.rows.size(), 3u);
+  for (const PeersRow& row : result.rows) {
+    EXPECT_EQ(row.floor_seconds > 0.0, row.form == "lcp" && row.family == "spheres") << row.problem;
+    EXPECT_EQ(row.run.z.size(), 0);
+  }
+  EXPECT_NE(peers_text(result).find("(best / floor)"), std::string::npos);
 }
 
 TEST(PeersStudy, AWrongAnswerOfOursIsCounted) {
