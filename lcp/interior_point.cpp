@@ -146,6 +146,7 @@ class InteriorPoint::Workspace {
   std::vector<RowState> guess_, last_guess_, tried_;
   int next_crossing_ = 0;
   int crossing_wait_ = 1;
+  int wasted_ = 0;
   bool polished_early_ = false;
 };
 
@@ -155,6 +156,7 @@ Status InteriorPoint::Workspace::run(const Vector* warm_start) {
   tried_.clear();
   next_crossing_ = 0;
   crossing_wait_ = 1;
+  wasted_ = 0;
   polished_early_ = false;
   guess_.clear();
   proximal_ = settings_.proximal;
@@ -462,12 +464,17 @@ int InteriorPoint::Workspace::guess_set() {
 /// a failure it waits, each time longer. @return whether that solves the problem
 bool InteriorPoint::Workspace::cross_over() {
   constexpr double kSettled = 0.005;  // of the rows may still have changed
+  // Factorisations that failures may have cost: some, and a share of the iterations.
+  constexpr double kFirstWaste = 2.0;
+  constexpr double kWasteShare = 0.3;
   constexpr ActiveSetNewton::Limits kLimits = {.factorizations = 8, .wrong_share = 0.015};
   const int changed = guess_set();
   const bool settled = changed <= kSettled * static_cast<double>(guess_.size());
-  if (!settled || iterations_ < next_crossing_ || guess_ == tried_) {
+  const bool affordable = wasted_ <= kFirstWaste + kWasteShare * iterations_;
+  if (!settled || !affordable || iterations_ < next_crossing_ || guess_ == tried_) {
     return false;
   }
+  const int before = problem_.system().factorizations();
   tried_ = guess_;
   trial_ = x_;
   std::vector<RowState>& state = last_guess_;  // to change; the next guess is compared with guess_
@@ -476,6 +483,7 @@ bool InteriorPoint::Workspace::cross_over() {
       settings_.tolerance) {
     return true;
   }
+  wasted_ += problem_.system().factorizations() - before;
   next_crossing_ = iterations_ + crossing_wait_;
   crossing_wait_ *= 2;
   return false;
