@@ -68,6 +68,7 @@ void ActiveSetNewton::solve_on_set(ScaledProblem& problem, Vector& x,
       x[i] = state[i] == RowState::kAtLower ? problem.lower()[i] : problem.upper()[i];
     }
   }
+  const double rounding = 1e-15 * (problem.g().cwiseAbs().maxCoeff() + x.cwiseAbs().maxCoeff());
   double before = kInfinity;
   for (int step = 0;; ++step) {
     problem.gradient(x, gradient_);
@@ -77,7 +78,7 @@ void ActiveSetNewton::solve_on_set(ScaledProblem& problem, Vector& x,
       h_[i] = state[i] == RowState::kBetween ? -gradient_[i] : 0.0;
       most = std::max(most, std::abs(h_[i]));
     }
-    if (!(most < 0.5 * before) || most == 0.0 || step == kMostProximalSteps) {
+    if (!(most < 0.5 * before) || most <= rounding || step == kMostProximalSteps) {
       return;
     }
     before = most;
