@@ -1,6 +1,7 @@
 #include <signorini/lcp/active_set_newton.h>
 #include <signorini/lcp/body_space_system.h>
 #include <signorini/lcp/interior_point.h>
+#include <signorini/lcp/number_text.h>
 #include <signorini/lcp/proximal_newton.h>
 #include <signorini/lcp/scaled_problem.h>
 
@@ -98,7 +99,6 @@ class InteriorPoint::Workspace {
   Status solve(const Problem& problem, const Vector* warm_start, const Deadline& deadline,
                Result& result) {
     deadline_ = &deadline;
-    detail_ = &result.detail;
     body_space_ = std::holds_alternative<FactoredMatrix>(problem.M);
     if (!body_space_ && given_ == nullptr) {
       given_ = make_given_matrix_system();
@@ -108,6 +108,10 @@ class InteriorPoint::Workspace {
     problem_.set(problem, system);
     iterations_ = 0;
     const Status ending = run(warm_start);
+    if (proximal_ > settings_.proximal) {
+      result.detail = "proximal term raised to " + number_text(proximal_) +
+                      " where a factorisation failed (it changes the path, not the answer)";
+    }
     problem_.best_z(result.z);
     result.statistics = {.iterations = iterations_,
                          .factorizations = system.factorizations(),
@@ -130,7 +134,6 @@ class InteriorPoint::Workspace {
 
   InteriorPointSettings settings_;
   const Deadline* deadline_ = nullptr;
-  std::string* detail_ = nullptr;
   bool body_space_ = false;
   BodySpaceSystem bodies_;
   std::unique_ptr<ShiftedSystem> given_;

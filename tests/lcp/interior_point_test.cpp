@@ -222,6 +222,25 @@ TEST(InteriorPoint, NonsymmetricMonotoneMatrices) {
   }
 }
 
+/// Two free rows that are the same: without a proximal term there is no factor.
+TEST(InteriorPoint, ARaisedProximalTermIsInTheResult) {
+  Problem problem;
+  problem.M = Matrix{{1.0, 1.0}, {1.0, 1.0}};
+  problem.q = Vector{{-1.0, -1.0}};
+  problem.lower = Vector::Constant(2, -std::numeric_limits<double>::infinity());
+  InteriorPointSettings settings;
+  settings.proximal = 0.0;
+  InteriorPoint solver(settings);
+  Result result;
+  solver.solve(problem, result);
+  EXPECT_EQ(result.status, Status::kSolved) << result.detail;
+  EXPECT_NE(result.detail.find("proximal term raised"), std::string::npos) << result.detail;
+  InteriorPoint usual;
+  usual.solve(problem, result);
+  EXPECT_EQ(result.status, Status::kSolved);
+  EXPECT_EQ(result.detail, "");
+}
+
 TEST(InteriorPoint, FreeRowsAloneAreALinearSystem) {
   Problem problem = make_family({"tower4", 5});
   problem.lower.setConstant(problem.size(), -std::numeric_limits<double>::infinity());
