@@ -449,34 +449,38 @@ void sweep(const RowRun<T>& run, T* u, T* x, bool backward) {
 
 template <typename T>
 void add(const RowRun<T>& run, T* u, const T* x) {
+  const bool is_packet = run.form == RowForm::kPacket;
   const int rows = rows_of(run.form);
-  const int lanes = lanes_of(run.form);
-  const int blocks = blocks_of(run.form);
   const int size = record_layout(run.form, run.kind).size;
-  const int blocks_a_row = run.form == RowForm::kPacket ? 2 : 0;
   for (std::ptrdiff_t i = 0; i < run.count; ++i) {
+    const std::int32_t* blocks = run.blocks + blocks_of(run.form) * i;
+    const T* factors = x + run.first + lanes_of(run.form) * i;
+    Twelve<T> v = load_blocks(u, blocks);
     for (int r = 0; r < rows; ++r) {
-      const std::int32_t* row_blocks = run.blocks + blocks * i + blocks_a_row * r;
-      const T factor = x[run.first + lanes * i + r];
-      Twelve<T> v = load_blocks(u, row_blocks);
-      add_row(v, run.numbers + size * i + kRowNumbers * r, four(factor));
-      store_blocks(u, row_blocks, v);
+      if (is_packet && r > 0) {
+        store_blocks(u, blocks + 2 * (r - 1), v);
+        v = load_blocks(u, blocks + 2 * r);
+      }
+      add_row(v, run.numbers + size * i + kRowNumbers * r, four(factors[r]));
     }
+    store_blocks(u, is_packet ? blocks + 2 * (rows - 1) : blocks, v);
   }
 }
 
 template <typename T>
 void products(const RowRun<T>& run, const T* u, const T* x, T* w) {
+  const bool is_packet = run.form == RowForm::kPacket;
   const int rows = rows_of(run.form);
-  const int lanes = lanes_of(run.form);
-  const int blocks = blocks_of(run.form);
   const RecordLayout at = record_layout(run.form, run.kind);
-  const int blocks_a_row = run.form == RowForm::kPacket ? 2 : 0;
   for (std::ptrdiff_t i = 0; i < run.count; ++i) {
     const T* record = run.numbers + at.size * i;
+    const std::int32_t* blocks = run.blocks + blocks_of(run.form) * i;
+    Twelve<T> v = load_blocks(u, blocks);
     for (int r = 0; r < rows; ++r) {
-      const Twelve<T> v = load_blocks(u, run.blocks + blocks * i + blocks_a_row * r);
-      const std::ptrdiff_t mine = run.first + lanes * i + r;
+      if (is_packet && r > 0) {
+        v = load_blocks(u, blocks + 2 * r);
+      }
+      const std::ptrdiff_t mine = run.first + lanes_of(run.form) * i + r;
       const T g_u = sum<T>(multiply(record + kRowNumbers * r, v));
       const T compliant =
           run.kind == RowKind::kContact ? T(0) : record[at.compliance + r] * x[mine];
