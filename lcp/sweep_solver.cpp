@@ -152,7 +152,7 @@ class SweepSolver::Workspace {
     take_rows(problem);
     const SweepSettings& settings = solver.sweep_settings();
     const double relaxation = solver.relaxation();
-    if (settings.threads > 1 && team_ == nullptr) {
+    if (settings.threads > 1 && settings.row_order == RowOrder::kColoured && team_ == nullptr) {
       team_ = std::make_unique<ThreadTeam>(settings.threads);
     }
     if (settings.precision == Precision::kFloat) {
