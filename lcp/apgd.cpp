@@ -34,7 +34,7 @@ class Apgd::Workspace {
 
   WhitenedRows rows_;
   Vector g_, lower_, upper_, lower_z_, upper_z_;
-  Vector x_, next_, y_, slope_, u_, best_x_;
+  Vector x_, next_, y_, slope_, u_, best_x_, power_;
   double best_residual_ = kInfinity;
 };
 
@@ -42,8 +42,8 @@ void Apgd::Workspace::set(const Problem& problem) {
   rows_.set(std::get<FactoredMatrix>(problem.M));
   const Index n = rows_.rows();
   g_ = problem.q.cwiseQuotient(rows_.scale());
-  lower_z_ = problem.lower.size() > 0 ? problem.lower : Vector::Zero(n);
-  upper_z_ = problem.upper.size() > 0 ? problem.upper : Vector::Constant(n, kInfinity);
+  problem.lower.size() > 0 ? lower_z_ = problem.lower : lower_z_.setZero(n);
+  problem.upper.size() > 0 ? upper_z_ = problem.upper : upper_z_.setConstant(n, kInfinity);
   lower_ = lower_z_.cwiseProduct(rows_.scale());
   upper_ = upper_z_.cwiseProduct(rows_.scale());
 }
@@ -59,16 +59,16 @@ void Apgd::Workspace::gradient(const Vector& x, Vector& out) {
 double Apgd::Workspace::largest_eigenvalue(int iterations) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> uniform(0.5, 1.5);
-  Vector v(rows_.rows());
-  std::generate(v.begin(), v.end(), [&] { return uniform(random); });
+  power_.resize(rows_.rows());
+  std::generate(power_.begin(), power_.end(), [&] { return uniform(random); });
   double eigenvalue = 1.0;
   for (int k = 0; k < iterations; ++k) {
-    v.normalize();
-    gradient(v, slope_);
+    power_.normalize();
+    gradient(power_, slope_);
     slope_ -= g_;
-    eigenvalue = v.dot(slope_);
-    v.swap(slope_);
-    if (!(v.norm() > 0.0)) {
+    eigenvalue = power_.dot(slope_);
+    power_.swap(slope_);
+    if (!(power_.norm() > 0.0)) {
       break;  // the zero matrix
     }
   }
@@ -104,7 +104,7 @@ Status Apgd::Workspace::descend(const Problem& problem, const ApgdSettings& sett
                                 const Vector* warm_start, const Deadline& deadline,
                                 Result& result) {
   const Index n = rows_.rows();
-  x_ = warm_start != nullptr ? warm_start->cwiseProduct(rows_.scale()).eval() : Vector::Zero(n);
+  warm_start != nullptr ? x_ = warm_start->cwiseProduct(rows_.scale()) : x_.setZero(n);
   x_ = x_.cwiseMax(lower_).cwiseMin(upper_);
   best_x_ = x_;
   best_residual_ = kInfinity;

@@ -1,6 +1,8 @@
 #include <signorini/lcp/apgd.h>
 #include <signorini/lcp/interior_point.h>
 
+#include "allocation_count.h"
+
 #include <bench/contact_families.h>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -127,6 +129,20 @@ TEST(Apgd, SettingsOutOfRangeAreNamed) {
   EXPECT_THROW(Apgd(with(&ApgdSettings::power_iterations, 0)), std::invalid_argument);
   EXPECT_THROW(Apgd(with(&ApgdSettings::lipschitz_margin, 0.5)), std::invalid_argument);
   EXPECT_THROW(Apgd(with(&ApgdSettings::check_period, 0)), std::invalid_argument);
+}
+
+TEST(Apgd, SolvingAgainAllocatesNothing) {
+  const Problem problem = bench::make_family({"pyramid2d", 5});
+  const Problem other = bench::make_family({"pyramid2d", 5, 1.0, 2});
+  Apgd solver;
+  Result result;
+  Result warm;
+  solver.solve(problem, result);
+  solver.solve(problem, warm, &result.z);
+  const AllocationCount allocations;
+  solver.solve(other, result);
+  solver.solve(problem, warm, &result.z);
+  EXPECT_EQ(allocations.count(), 0);
 }
 
 }  // namespace
