@@ -12,9 +12,10 @@ struct InteriorPointSettings : SolverSettings {
   /// to 60.
   static constexpr int kDefaultIterations = 150;
 
-  /// Added to the diagonal of the scaled matrix, dimensionless, >= 0: a proximal term, which changes
-  /// the path and not the answer. 0 breaks down on redundant contacts; 1e-8 stalls at mass ratios
-  /// of 1e6. Where a factorisation fails it is raised, at most to 1e-6, and the result says so.
+  /// Added to the diagonal of the scaled matrix, dimensionless, >= 0: a proximal term, which
+  /// changes the path and not the answer. 0 breaks down on redundant contacts; 1e-8 stalls at mass
+  /// ratios of 1e6. Where a factorisation fails it is raised, at most to 1e-6, and the result says
+  /// so.
   double proximal = 1e-12;
   /// Fraction of the way to the boundary that a step goes, in (0, 1).
   double step_fraction = 0.99;
