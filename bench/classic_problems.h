@@ -8,9 +8,9 @@ namespace signorini::bench {
 
 /// Murty's example: M lower triangular, 1 on the diagonal and 2 below; a P-matrix, so that every q
 /// has one solution. q_i = -(2^n + 2^(n-1) + ... + 2^(n-i+1)), i = 1 .. n: Lemke's method with the
-/// covering vector (1, ..., 1) takes 2^n - 1 pivots in this order of the rows (not with every
-/// tie-break and scaling). Source: Murty, Linear Complementarity, Linear and Nonlinear Programming
-/// (1988), section 6.1. The solution is z = (2^n, 0, ..., 0).
+/// covering vector (1, ..., 1) takes 2^n - 1 pivots (a Lemke that scales the rows does not).
+/// Source: Murty, Linear Complementarity, Linear and Nonlinear Programming (1988), section 6.1. The
+/// solution is z = (2^n, 0, ..., 0).
 /// @param n in [1, 50]: every number is exact. @throws std::invalid_argument otherwise.
 [[nodiscard]] lcp::Problem make_murty(int n);
 
