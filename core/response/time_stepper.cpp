@@ -117,10 +117,12 @@ void TimeStepper::find(const State& state, ContactSet& contacts) {
   validate(contacts, static_cast<int>(bodies_.size()));
 }
 
-void TimeStepper::solve(const PyramidProblem& pyramid, lcp::Result& result) {
+void TimeStepper::solve(const PyramidProblem& pyramid, const ContactSet& contacts,
+                        lcp::Result& result) {
   const lcp::Problem& problem = pyramid.problem;
   if (problem.size() != 1) {
-    solver_->solve(problem, result);
+    const bool warm = settings_.warm_start && memory_.recall(pyramid, contacts, start_) > 0;
+    solver_->solve(problem, result, warm ? &start_ : nullptr);
     return;
   }
   result = {};
@@ -211,7 +213,12 @@ void TimeStepper::step(State& state, StepReport& report) {
   PyramidProblem pyramid;
   assemble_pyramid(bodies_, next, report.contacts, selection.allowance, settings_.pyramid_sides,
                    pyramid);
-  solve(pyramid, report.result);
+  solve(pyramid, report.contacts, report.result);
+  if (report.result.z.allFinite()) {
+    memory_.remember(pyramid, report.contacts, report.result.z);
+  } else {
+    memory_.forget();
+  }
   report.status = report.result.status;
   apply(pyramid, next, report);
   move(state, report.contacts, next);

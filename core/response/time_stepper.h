@@ -3,6 +3,7 @@
 #include <signorini/core/model/body.h>
 #include <signorini/core/model/contact_finder.h>
 #include <signorini/core/model/unconstrained_motion.h>
+#include <signorini/core/response/contact_memory.h>
 #include <signorini/core/response/friction_pyramid.h>
 #include <signorini/lcp/result.h>
 #include <signorini/lcp/solver.h>
@@ -34,6 +35,9 @@ struct TimeStepSettings {
   /// 4e-10 m/s. Such errors come back in the q of the next step; with mass ratios of 1000 and more
   /// Lemke does not always reach 1e-9 against them.
   lcp::SolverSettings lcp = {.tolerance = 1e-8};
+  /// Starts the velocity problem from the impulses of the step before (contact_memory.h), for
+  /// solvers that use a warm start.
+  bool warm_start = true;
 
   /// @throws std::invalid_argument naming field, value and bound.
   void validate() const;
@@ -115,7 +119,7 @@ class TimeStepper {
  private:
   [[nodiscard]] State with_forces_applied(const State& start) const;
   void find(const State& state, ContactSet& contacts);
-  void solve(const PyramidProblem& pyramid, lcp::Result& result);
+  void solve(const PyramidProblem& pyramid, const ContactSet& contacts, lcp::Result& result);
   void apply(const PyramidProblem& pyramid, State& state, StepReport& report) const;
   void move(const State& start, const ContactSet& contacts, State& state) const;
   void project(State& state, StepReport& report);
@@ -124,6 +128,8 @@ class TimeStepper {
   ContactFinder& finder_;
   TimeStepSettings settings_;
   std::unique_ptr<lcp::Solver> solver_;
+  ContactMemory memory_;
+  lcp::Vector start_;
 };
 
 }  // namespace signorini

@@ -1,0 +1,81 @@
+#include <signorini/core/response/contact_memory.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+
+namespace signorini {
+namespace {
+
+template <typename Keyed>
+auto key(const Keyed& keyed) {
+  return std::tie(keyed.body_a, keyed.body_b, keyed.feature_id);
+}
+
+/// beta of the two directions j, j + 1 between which the impulse (a, b) along (t1, t2) lies: the
+/// directions are at 2 pi j / k, and sin(d) beta_j = |(a, b)| sin(of the angle to the other one).
+void split(double a, double b, int sides, double* beta) {
+  const double size = std::hypot(a, b);
+  if (size == 0.0) {
+    return;
+  }
+  const double step = 2.0 * std::numbers::pi / sides;
+  double angle = std::atan2(b, a);
+  angle += angle < 0.0 ? 2.0 * std::numbers::pi : 0.0;
+  const int first = std::min(static_cast<int>(angle / step), sides - 1);
+  const double beyond = std::clamp(angle - first * step, 0.0, step);
+  beta[first] = size * std::sin(step - beyond) / std::sin(step);
+  beta[(first + 1) % sides] = size * std::sin(beyond) / std::sin(step);
+}
+
+}  // namespace
+
+void ContactMemory::remember(const PyramidProblem& pyramid, const ContactSet& contacts,
+                             const lcp::VectorRef& z) {
+  const int normals = static_cast<int>(contacts.size());
+  const int frictional = static_cast<int>(pyramid.frictional.size());
+  const std::vector<Vec3> impulses = contact_impulses(pyramid, contacts, z);
+  entries_.clear();
+  for (int i = 0; i < normals; ++i) {
+    entries_.push_back({contacts[i].body_a, contacts[i].body_b, contacts[i].feature_id, z[i],
+                        impulses[i] - z[i] * contacts[i].normal, 0.0});
+  }
+  for (int c = 0; c < frictional; ++c) {
+    entries_[pyramid.frictional[c]].slip = z[normals + pyramid.sides * frictional + c];
+  }
+  std::stable_sort(entries_.begin(), entries_.end(),
+                   [](const Entry& a, const Entry& b) { return key(a) < key(b); });
+}
+
+const ContactMemory::Entry* ContactMemory::find(const Contact& contact) const {
+  const auto found =
+      std::lower_bound(entries_.begin(), entries_.end(), contact,
+                       [](const Entry& a, const Contact& b) { return key(a) < key(b); });
+  return found != entries_.end() && key(*found) == key(contact) ? &*found : nullptr;
+}
+
+int ContactMemory::recall(const PyramidProblem& pyramid, const ContactSet& contacts,
+                          lcp::Vector& z) const {
+  const int normals = static_cast<int>(contacts.size());
+  const int frictional = static_cast<int>(pyramid.frictional.size());
+  z.setZero(pyramid.problem.size());
+  int known = 0;
+  for (int i = 0; i < normals; ++i) {
+    if (const Entry* entry = find(contacts[i])) {
+      z[i] = std::max(entry->normal, 0.0);
+      ++known;
+    }
+  }
+  for (int c = 0; c < frictional; ++c) {
+    if (const Entry* entry = find(contacts[pyramid.frictional[c]])) {
+      const TangentFrame& frame = pyramid.frames[c];
+      split(frame.t1.dot(entry->friction), frame.t2.dot(entry->friction), pyramid.sides,
+            z.data() + normals + pyramid.sides * c);
+      z[normals + pyramid.sides * frictional + c] = std::max(entry->slip, 0.0);
+    }
+  }
+  return known;
+}
+
+}  // namespace signorini

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <signorini/core/model/contact.h>
+#include <signorini/core/response/friction_pyramid.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace signorini {
+
+/// What the contacts of one step carried, for the warm start of the next. A contact is known again
+/// by its bodies and its feature id; of two with the same key the first counts.
+class ContactMemory {
+ public:
+  /// Keeps normal impulse, friction impulse (world axes) and lambda of every contact.
+  /// @param z of the pyramid problem, finite
+  void remember(const PyramidProblem& pyramid, const ContactSet& contacts, const lcp::VectorRef& z);
+  void forget() { entries_.clear(); }
+
+  /// Writes the z of the pyramid problem that the remembered impulses amount to: f as it was; the
+  /// friction impulse, without its part along the new normal, on the two directions of the new
+  /// pyramid on either side of it, beta >= 0; lambda as it was; zero for contacts that are new.
+  /// @return how many contacts were known; z is written in any case
+  int recall(const PyramidProblem& pyramid, const ContactSet& contacts, lcp::Vector& z) const;
+
+ private:
+  struct Entry {
+    int body_a;
+    int body_b;
+    std::uint64_t feature_id;
+    double normal;  // N s
+    Vec3 friction;  // N s, on A
+    double slip;    // lambda, m/s
+  };
+  [[nodiscard]] const Entry* find(const Contact& contact) const;
+
+  std::vector<Entry> entries_;  // sorted by their keys
+};
+
+}  // namespace signorini
