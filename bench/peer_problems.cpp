@@ -118,13 +118,6 @@ bool is_problem(const std::filesystem::path& folder) {
 
 void add_folder(const std::filesystem::path& folder, std::vector<PeerProblem>& problems) {
   lcp::ProblemFolder read = lcp::read_problem_folder(folder);
-  if (read.problem.cones.empty()) {  // the friction coefficients say what the rows are
-    for (lcp::Index c = 0; c < read.mu.size(); ++c) {
-      read.problem.cones.push_back({.normal_row = read.dimension * static_cast<int>(c),
-                                    .dimension = read.dimension,
-                                    .coefficient = read.mu[c]});
-    }
-  }
   PeerProblem problem;
   problem.form = read.kind;
   problem.family = "folders";

@@ -51,6 +51,15 @@ int BlockMass::add_mass(const MatrixRef& mass) {
   return add(factor.matrixL(), true);
 }
 
+int BlockMass::add_factor(const MatrixRef& factor) {
+  if (factor.rows() != factor.cols() || factor.rows() == 0 || !factor.allFinite() ||
+      !factor.isLowerTriangular(0.0) || !(factor.diagonal().array() > 0.0).all()) {
+    throw std::invalid_argument(
+        "BlockMass: factor: must be square, finite, lower triangular and > 0 on its diagonal");
+  }
+  return add(factor, true);
+}
+
 int BlockMass::add(const Matrix& values, bool is_factor) {
   const int dimension = static_cast<int>(values.rows());
   blocks_.push_back({degrees_of_freedom_, dimension, static_cast<int>(values_.size()), is_factor});

@@ -24,6 +24,11 @@ class BlockMass {
   /// definite.
   int add_mass(const MatrixRef& mass);
 
+  /// Adds a block by the Cholesky factor L of its mass, M_k = L L^T: what add_mass() keeps, so that
+  /// a block can be copied to the bit. @return the block's number. @throws std::invalid_argument
+  /// unless L is square, finite, lower triangular and its diagonal is > 0.
+  int add_factor(const MatrixRef& factor);
+
   void clear();
   void reserve(int blocks, int dimension_each);
 
@@ -31,6 +36,13 @@ class BlockMass {
   [[nodiscard]] int dimension(int block) const { return blocks_[block].dimension; }
   /// The first degree of freedom of the block in the stacked velocity vector.
   [[nodiscard]] int offset(int block) const { return blocks_[block].offset; }
+  /// True where stored(block) is the factor L of M_k = L L^T, false where it is W_k.
+  [[nodiscard]] bool is_factor(int block) const { return blocks_[block].is_factor; }
+  /// The d x d numbers that the block is kept as.
+  [[nodiscard]] Eigen::Map<const Matrix> stored(int block) const {
+    const Block& b = blocks_[block];
+    return {values_.data() + b.values, b.dimension, b.dimension};
+  }
   /// The length of the stacked velocity vector.
   [[nodiscard]] int degrees_of_freedom() const { return degrees_of_freedom_; }
 

@@ -96,6 +96,34 @@ void sort_and_refuse_repeats(CoordinateMatrix& matrix, const TextLines& lines) {
   }
 }
 
+using ReadNumber = double (TextLines::*)(std::string_view);
+
+Matrix read_array(const std::filesystem::path& file, ReadNumber number) {
+  TextLines lines(file);
+  read_header(lines, "array");
+  const int rows = lines.integer("rows", 0, kMaxInt);
+  const int columns = lines.integer("columns", 0, kMaxInt);
+  lines.expect_end_of_line("the sizes");
+  const std::int64_t declared = std::int64_t{rows} * columns;
+  std::vector<double> values;  // grows with the file, not with what it declares
+  for (std::int64_t k = 0; k < declared; ++k) {
+    if (!lines.next_nonblank()) {
+      fail_truncated(lines, declared, k, "values");
+    }
+    values.push_back((lines.*number)("value"));
+    lines.expect_end_of_line("the value");
+  }
+  expect_end_of_file(lines, declared, "values");
+  return Eigen::Map<const Matrix>(values.data(), rows, columns);
+}
+
+Vector only_column(const std::filesystem::path& file, const Matrix& matrix) {
+  if (matrix.cols() != 1) {
+    throw InputError(file, 0, "expected one column, found " + std::to_string(matrix.cols()));
+  }
+  return matrix.col(0);
+}
+
 bool equals_transpose(const SparseMatrix& matrix) {
   if (matrix.rows() != matrix.cols()) {
     return false;
@@ -131,30 +159,15 @@ CoordinateMatrix read_coordinate_matrix(const std::filesystem::path& file) {
 }
 
 Matrix read_array(const std::filesystem::path& file) {
-  TextLines lines(file);
-  read_header(lines, "array");
-  const int rows = lines.integer("rows", 0, kMaxInt);
-  const int columns = lines.integer("columns", 0, kMaxInt);
-  lines.expect_end_of_line("the sizes");
-  const std::int64_t declared = std::int64_t{rows} * columns;
-  std::vector<double> values;  // grows with the file, not with what it declares
-  for (std::int64_t k = 0; k < declared; ++k) {
-    if (!lines.next_nonblank()) {
-      fail_truncated(lines, declared, k, "values");
-    }
-    values.push_back(lines.number("value"));
-    lines.expect_end_of_line("the value");
-  }
-  expect_end_of_file(lines, declared, "values");
-  return Eigen::Map<const Matrix>(values.data(), rows, columns);
+  return read_array(file, &TextLines::number);
 }
 
 Vector read_vector(const std::filesystem::path& file) {
-  const Matrix matrix = read_array(file);
-  if (matrix.cols() != 1) {
-    throw InputError(file, 0, "expected one column, found " + std::to_string(matrix.cols()));
-  }
-  return matrix.col(0);
+  return only_column(file, read_array(file, &TextLines::number));
+}
+
+Vector read_bounds(const std::filesystem::path& file) {
+  return only_column(file, read_array(file, &TextLines::number_or_infinity));
 }
 
 SparseMatrix to_sparse(const CoordinateMatrix& matrix) {
@@ -199,6 +212,10 @@ std::string matrix_market_text(const SparseMatrix& matrix) {
   return std::string("%%MatrixMarket matrix coordinate real ") +
          (symmetric ? "symmetric\n" : "general\n") + std::to_string(matrix.rows()) + " " +
          std::to_string(matrix.cols()) + " " + std::to_string(count) + "\n" + entries;
+}
+
+std::string matrix_market_text(const Matrix& matrix) {
+  return matrix_market_text(SparseMatrix(matrix.sparseView(1.0, 0.0)));
 }
 
 std::string matrix_market_text(const Vector& vector) {

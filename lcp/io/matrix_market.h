@@ -39,6 +39,9 @@ struct CoordinateMatrix {
 /// An array with one column. @throws InputError
 [[nodiscard]] Vector read_vector(const std::filesystem::path& file);
 
+/// The same, where numbers may be inf and -inf: bounds. @throws InputError
+[[nodiscard]] Vector read_bounds(const std::filesystem::path& file);
+
 /// Both triangles, compressed. Allocates O(columns + entries). @throws std::length_error if both
 /// triangles together have more entries than int can count.
 [[nodiscard]] SparseMatrix to_sparse(const CoordinateMatrix& matrix);
@@ -46,6 +49,7 @@ struct CoordinateMatrix {
 /// The text of a coordinate file, 17 significant digits: symmetric (lower triangle) if the matrix
 /// equals its transpose to the bit, else general. Stored zeros are left out.
 [[nodiscard]] std::string matrix_market_text(const SparseMatrix& matrix);
+[[nodiscard]] std::string matrix_market_text(const Matrix& matrix);
 
 /// The text of an array file with one column, 17 significant digits.
 [[nodiscard]] std::string matrix_market_text(const Vector& vector);

@@ -105,7 +105,7 @@ int TextLines::integer(std::string_view what, int least, int most) {
   return static_cast<int>(value);
 }
 
-double TextLines::number(std::string_view what) {
+double TextLines::number_or_infinity(std::string_view what) {
   const std::string_view found = word();
   const std::string_view digits = without_plus(found);
   double value = 0.0;
@@ -116,9 +116,20 @@ double TextLines::number(std::string_view what) {
     fail(std::string(what) + ": expected a number, found " +
          (found.empty() ? "the end of the line" : in_quotes(found)));
   }
-  if (error == std::errc::result_out_of_range || !std::isfinite(value)) {
+  if (error == std::errc::result_out_of_range || std::isnan(value)) {
     fail(std::string(what) + ": expected a finite number in the range of double, found " +
          in_quotes(found));
+  }
+  return value;
+}
+
+double TextLines::number(std::string_view what) {
+  const std::string_view rest = line_rest_;
+  const double value = number_or_infinity(what);
+  if (!std::isfinite(value)) {
+    line_rest_ = rest;
+    fail(std::string(what) + ": expected a finite number in the range of double, found " +
+         in_quotes(word()));
   }
   return value;
 }

@@ -27,6 +27,8 @@ class TextLines {
   int integer(std::string_view what, int least, int most);
   /// The next word as a finite number.
   double number(std::string_view what);
+  /// The next word as a number or inf, +inf, -inf.
+  double number_or_infinity(std::string_view what);
   /// @throws InputError if a word is left on the line.
   void expect_end_of_line(std::string_view after);
 

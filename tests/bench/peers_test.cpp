@@ -186,11 +186,7 @@ TEST(PeerProblems, FoldersAreReadOneOrMany) {
       std::filesystem::path(testing::TempDir()) / ("peers_" + std::to_string(::getpid()));
   std::filesystem::create_directories(root);
   for (const char* name : {"b", "a"}) {
-    lcp::ProblemFolder folder;
-    folder.kind = "lcp";
-    folder.problem = make_fathi(3);
-    folder.contacts = 3;
-    lcp::write_problem_folder(folder, root / name);
+    lcp::write_problem_folder(make_fathi(3), root / name);
   }
   const auto many = peer_problems({.families = {}, .folders = {root}});
   ASSERT_EQ(many.size(), 2u);
