@@ -47,6 +47,18 @@ void Solver::certify_result(const Problem& problem, Status ending, Result& resul
   }
 }
 
+void Solver::record(const Problem& problem, const Vector* warm_start, Result& result) const {
+  std::string said;
+  try {
+    said = settings().recorder->record({name(), settings(), problem, warm_start, result});
+  } catch (const std::exception& error) {
+    said = std::string("not recorded: ") + error.what();
+  }
+  if (!said.empty()) {
+    result.detail += (result.detail.empty() ? "" : "; ") + said;
+  }
+}
+
 void Solver::solve(const Problem& problem, Result& result, const Vector* warm_start) {
   check_shapes(problem);
   settings().validate();
@@ -83,6 +95,9 @@ void Solver::solve(const Problem& problem, Result& result, const Vector* warm_st
     }
   }
   result.statistics.solve_seconds = deadline.elapsed_seconds();
+  if (settings().recorder != nullptr) {
+    record(problem, warm_start, result);
+  }
 }
 
 }  // namespace signorini::lcp

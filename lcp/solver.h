@@ -2,6 +2,7 @@
 
 #include <signorini/lcp/problem.h>
 #include <signorini/lcp/result.h>
+#include <signorini/lcp/solve_recorder.h>
 
 #include <chrono>
 #include <limits>
@@ -21,6 +22,9 @@ struct SolverSettings {
   int max_iterations = -1;
   /// Seconds of wall time, > 0. A solve limited by time does not give the same answer twice.
   double time_limit = std::numeric_limits<double>::infinity();
+  /// Is told of every solve; null: nobody. Not owned: it must outlive the solver, and be safe for
+  /// threads if solvers of several threads share it.
+  SolveRecorder* recorder = nullptr;
 
   /// @throws std::invalid_argument that names the setting, its value and the bound.
   void validate() const;
@@ -72,6 +76,8 @@ class Solver {
   virtual void certify_result(const Problem& problem, Status ending, Result& result);
 
  private:
+  void record(const Problem& problem, const Vector* warm_start, Result& result) const;
+
   Certifier certifier_;
 };
 

@@ -1,7 +1,9 @@
 #include <signorini/lcp/io/result_text.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
 namespace signorini::lcp {
 namespace {
@@ -40,6 +42,29 @@ std::string ray_text(const Result& result) {
   }
 }
 
+std::string count_text(Index count, const std::string& what) {
+  return count > 0 ? fmt::format(", {} {}{}", count, what, count > 1 ? "s" : "") : "";
+}
+
+/// Rows with bounds other than 0 <= z_i and free ones, cones' rows apart.
+struct RowCounts {
+  Index free = 0;
+  Index bounded = 0;
+};
+
+RowCounts count_rows(const Problem& problem) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  RowCounts counts;
+  for (Index i = 0; i < problem.size(); ++i) {
+    const double lower = problem.lower.size() > 0 ? problem.lower[i] : 0.0;
+    const double upper = problem.upper.size() > 0 ? problem.upper[i] : kInfinity;
+    const bool is_free = lower == -kInfinity && upper == kInfinity;
+    counts.free += is_free ? 1 : 0;
+    counts.bounded += !is_free && (lower != 0.0 || upper != kInfinity) ? 1 : 0;
+  }
+  return counts;
+}
+
 /// The counter of the solver's own unit.
 int work_of(const Statistics& statistics) {
   return std::max(statistics.pivots, statistics.iterations);
@@ -48,9 +73,14 @@ int work_of(const Statistics& statistics) {
 }  // namespace
 
 std::string problem_text(const Problem& problem) {
-  std::string text = fmt::format("n = {}, {}", problem.size(), matrix_text(problem.M));
-  if (problem.lower.size() > 0) {
-    text += fmt::format(", {} free rows", (problem.lower.array() < 0.0).count());
+  const RowCounts counts = count_rows(problem);
+  std::string text = fmt::format("n = {}, {}", problem.size(), matrix_text(problem.M)) +
+                     count_text(counts.free, "free row") +
+                     count_text(counts.bounded, "bounded row") +
+                     count_text(static_cast<Index>(problem.limits.size()), "coupled limit") +
+                     count_text(static_cast<Index>(problem.cones.size()), "friction cone");
+  if (!problem.cones.empty()) {
+    text += fmt::format(" ({} law)", to_string(problem.friction_law));
   }
   return text;
 }
@@ -69,6 +99,9 @@ std::string result_text(const Result& result, double tolerance) {
   text += fmt::format("            backward error {:.2e}\n", c.backward_error);
   text += fmt::format("z, w        min z {:.2e}, min w {:.2e}, |z.w| {:.2e}\n", c.min_z, c.min_w,
                       c.complementarity);
+  if (!std::isnan(c.cone_violation)) {
+    text += fmt::format("            cone violation {:.2e}\n", c.cone_violation);
+  }
   if (result.ray.size() > 0) {
     text += fmt::format("ray         {}\n", ray_text(result));
   }

@@ -1,6 +1,7 @@
 #include <signorini/lcp/io/matrix_market.h>
 #include <signorini/lcp/io/result_writer.h>
 #include <signorini/lcp/io/whole_file.h>
+#include <signorini/lcp/solver.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -34,6 +35,7 @@ Json certificate_object(const Certificate& certificate) {
           {"min_z", number(certificate.min_z)},
           {"min_w", number(certificate.min_w)},
           {"complementarity", number(certificate.complementarity)},
+          {"cone_violation", number(certificate.cone_violation)},
           {"worst_row", counter(certificate.worst_row)}};
 }
 
@@ -65,13 +67,17 @@ std::string text_of(const Json& json, int indent) {
 
 }  // namespace
 
-void write_vector(const std::filesystem::path& file, const Vector& vector) {
+std::string vector_text(const Vector& vector) {
   std::string text;
   for (const double value : vector) {
     append_number(value, text);
     text += '\n';
   }
-  write_whole_file(file, text);
+  return text;
+}
+
+void write_vector(const std::filesystem::path& file, const Vector& vector) {
+  write_whole_file(file, vector_text(vector));
 }
 
 std::string result_json(const Result& result, std::span<const Result> tried, int indent) {
@@ -88,6 +94,17 @@ std::string results_json(std::span<const Result> results, std::span<const std::s
   json["results"] = array_of(results);
   json["left_out"] = std::vector<std::string>(left_out.begin(), left_out.end());
   return text_of(json, indent);
+}
+
+std::string record_json(const SolveRecord& record) {
+  const SolverSettings& settings = record.settings;
+  const Json json = {{"solver", record.solver},
+                     {"settings",
+                      {{"tolerance", number(settings.tolerance)},
+                       {"max_iterations", counter(settings.max_iterations)},
+                       {"time_limit", number(settings.time_limit)}}},
+                     {"result", result_object(record.result)}};
+  return text_of(json, 2);
 }
 
 }  // namespace signorini::lcp

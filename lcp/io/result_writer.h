@@ -1,6 +1,7 @@
 #pragma once
 
 #include <signorini/lcp/result.h>
+#include <signorini/lcp/solve_recorder.h>
 #include <signorini/lcp/types.h>
 
 #include <filesystem>
@@ -8,6 +9,9 @@
 #include <string>
 
 namespace signorini::lcp {
+
+/// A vector as text, one number a line with 17 significant digits.
+[[nodiscard]] std::string vector_text(const Vector& vector);
 
 /// Writes a vector, one number a line with 17 significant digits, whole or not at all.
 /// @throws std::runtime_error naming the file, see write_whole_file()
@@ -27,5 +31,9 @@ void write_vector(const std::filesystem::path& file, const Vector& vector);
 /// @param left_out one line for each solver that was not run: which and why
 [[nodiscard]] std::string results_json(std::span<const Result> results,
                                        std::span<const std::string> left_out = {}, int indent = 2);
+
+/// A recorded solve as a JSON object: solver, settings (tolerance, max_iterations, time_limit) and
+/// result, as in result_json().
+[[nodiscard]] std::string record_json(const SolveRecord& record);
 
 }  // namespace signorini::lcp

@@ -1,6 +1,7 @@
-// signorini-solve: reads a problem folder, solves it, says how good the answer is.
+// signorini-solve: reads a problem, solves it, says how good the answer is.
 
-#include <signorini/lcp/io/problem_folder.h>
+#include <signorini/lcp/io/dump_recorder.h>
+#include <signorini/lcp/io/recorded_solve.h>
 #include <signorini/lcp/io/result_text.h>
 #include <signorini/lcp/io/result_writer.h>
 #include <signorini/lcp/solver.h>
@@ -13,6 +14,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <unistd.h>
@@ -38,12 +40,17 @@ constexpr std::string_view kAutoChain[] = {"lemke", "pgs"};
 constexpr Index kExactRowsInAll = 60;
 
 constexpr const char* kFooter =
-    "PROBLEM is a folder with problem.txt and either W.mtx and q.mtx, or M.mtx, H.mtx, f.mtx and\n"
-    "w.mtx (then A = H' M^-1 H is never formed unless the solver needs it).\n"
+    "PROBLEM is a folder with problem.txt and W.mtx, q.mtx or a factored form (docs/\n"
+    "problem-folders.md), or an FCLIB file (.hdf5), local or global form.\n"
     "--solver auto tries lemke, then pgs (bounds, free rows), until one solves; all runs every\n"
     "solver and prints a table.\n"
+    "A problem that was dumped with a warm start is solved with it; --warm-start FILE (one number\n"
+    "a line) takes another, --cold none.\n"
     "--output gets z, one number a line, written whole or not at all: of an unsolved problem the\n"
     "best iterate, and the program says so.\n"
+    "--dump DIR[:OPTION,...], or the environment variable SIGNORINI_DUMP, writes every solve for "
+    "a\n"
+    "replay; options: all (default), unsolved; folder (default), hdf5, both; max=N.\n"
     "Exit code: 0 solved or solved to rounding, 2 not solved (the status is printed), 64 bad "
     "usage,\n"
     "65 bad input (file, line and what was expected), 73 the output cannot be written.";
@@ -53,7 +60,21 @@ struct Options {
   std::string solver = "auto";
   SolverSettings settings;
   std::string output;
+  std::string friction_law;  // empty: the problem's own
+  std::string warm_start;    // a file; empty: the problem's own
+  bool cold = false;
+  std::string dump;
   bool json = false;
+};
+
+/// What is solved, and from where.
+struct Task {
+  RecordedSolve recorded;
+  std::string start;  // where the warm start is from, for people; empty: cold
+  [[nodiscard]] const Problem& problem() const { return recorded.problem; }
+  [[nodiscard]] const Vector* warm_start() const {
+    return start.empty() ? nullptr : &recorded.warm_start;
+  }
 };
 
 class UsageError : public std::runtime_error {
@@ -139,7 +160,8 @@ std::size_t best_of(const std::vector<Result>& results) {
 }
 
 /// Runs the chain; each unsolved end is the next one's warm start.
-std::vector<Result> solve_auto(const Problem& problem, const SolverSettings& settings) {
+std::vector<Result> solve_auto(const Task& task, const SolverSettings& settings) {
+  const Problem& problem = task.problem();
   const Deadline deadline(settings.time_limit);
   std::vector<Result> tried;
   for (const std::string_view name : kAutoChain) {
@@ -149,7 +171,7 @@ std::vector<Result> solve_auto(const Problem& problem, const SolverSettings& set
     }
     SolverSettings own = settings;
     own.time_limit = left > 0.0 ? left : settings.time_limit;
-    const Vector* start = tried.empty() ? nullptr : &tried.back().z;
+    const Vector* start = tried.empty() ? task.warm_start() : &tried.back().z;
     tried.push_back(solve_with(name, problem, own, start));
     if (is_final(tried.back().status)) {
       break;
@@ -163,7 +185,8 @@ struct AllResults {
   std::vector<std::string> left_out;  // solver and why
 };
 
-AllResults solve_all(const Problem& problem, const SolverSettings& settings) {
+AllResults solve_all(const Task& task, const SolverSettings& settings) {
+  const Problem& problem = task.problem();
   AllResults all;
   for (const std::string_view name : solver_names()) {
     std::string why = make_solver(name)->refuses(problem);
@@ -173,7 +196,7 @@ AllResults solve_all(const Problem& problem, const SolverSettings& settings) {
                         kExactRowsInAll);
     }
     if (why.empty()) {
-      all.results.push_back(solve_with(name, problem, settings));
+      all.results.push_back(solve_with(name, problem, settings, task.warm_start()));
     } else {
       all.left_out.push_back(fmt::format("{}: left out: {}", name, why));
     }
@@ -209,8 +232,8 @@ int exit_code(const Result& result) {
   return result.status == Status::kInvalidInput ? kBadInput : kNotSolved;
 }
 
-int run_all(const Options& options, const Problem& problem) {
-  const AllResults all = solve_all(problem, options.settings);
+int run_all(const Options& options, const Task& task) {
+  const AllResults all = solve_all(task, options.settings);
   if (options.json) {
     print(results_json(all.results, all.left_out));
   } else {
@@ -227,15 +250,20 @@ int run_all(const Options& options, const Problem& problem) {
   return exit_code(best);
 }
 
-int run_one(const Options& options, const Problem& problem) {
+int run_one(const Options& options, const Task& task) {
   std::vector<Result> tried;
   if (options.solver == "auto") {
-    tried = solve_auto(problem, options.settings);
+    tried = solve_auto(task, options.settings);
+    if (tried.empty()) {
+      throw UsageError("--solver auto: no solver takes " + problem_text(task.problem()));
+    }
   } else {
-    if (const std::string why = make_solver(options.solver)->refuses(problem); !why.empty()) {
+    const std::string why = make_solver(options.solver)->refuses(task.problem());
+    if (!why.empty()) {
       throw UsageError(fmt::format("--solver {}: {}", options.solver, why));
     }
-    tried.push_back(solve_with(options.solver, problem, options.settings));
+    tried.push_back(
+        solve_with(options.solver, task.problem(), options.settings, task.warm_start()));
   }
   const Result& result = tried[best_of(tried)];
   if (options.json) {
@@ -254,20 +282,86 @@ int run_one(const Options& options, const Problem& problem) {
   return exit_code(result);
 }
 
-int run(const Options& options) {
+FrictionLaw law_of(const std::string& name) {
+  if (name != "coulomb" && name != "associated") {
+    throw UsageError(
+        fmt::format("--friction-law: expected coulomb or associated, found '{}'", name));
+  }
+  return name == "coulomb" ? FrictionLaw::kCoulomb : FrictionLaw::kAssociated;
+}
+
+Task read_task(const Options& options) {
+  Task task;
+  RecordedSolve& recorded = task.recorded;
+  recorded = read_recorded_solve(options.problem);
+  if (!options.friction_law.empty()) {
+    recorded.problem.friction_law = law_of(options.friction_law);
+  }
+  if (!options.warm_start.empty()) {
+    recorded.warm_start = read_numbers(options.warm_start, recorded.problem.size());
+    task.start = options.warm_start;
+  } else if (!options.cold && recorded.warm_start.size() > 0) {
+    task.start = "recorded with the problem";
+  }
+  return task;
+}
+
+void print_task(const Options& options, const Task& task) {
+  print(fmt::format("problem     {}: {}\n", options.problem, problem_text(task.problem())));
+  for (const std::string& note : task.recorded.notes) {
+    print(fmt::format("read        {}\n", note));
+  }
+  if (!task.start.empty()) {
+    print(fmt::format("warm start  {}\n", task.start));
+  }
+  const RecordedSolve& recorded = task.recorded;
+  if (!recorded.solver.empty()) {
+    print(fmt::format("recorded    {}: {}, {} pivots/iterations, {:.3g} s, tolerance {:.1e}\n",
+                      recorded.solver, recorded.status, recorded.work, recorded.seconds,
+                      recorded.settings.tolerance));
+  }
+}
+
+std::unique_ptr<DumpRecorder> make_recorder(const Options& options) {
+  try {
+    return options.dump.empty() ? dump_recorder_from_environment()
+                                : std::make_unique<DumpRecorder>(DumpSettings::parse(options.dump));
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(options.dump.empty() ? error.what() : fmt::format("--dump: {}", error.what()));
+  } catch (const std::exception& error) {
+    throw OutputError(error.what());
+  }
+}
+
+void check_options(const Options& options) {
   check_solver_name(options.solver);
+  if (options.cold && !options.warm_start.empty()) {
+    throw UsageError("--cold and --warm-start exclude each other");
+  }
+  if (!options.friction_law.empty()) {
+    (void)law_of(options.friction_law);
+  }
   try {
     options.settings.validate();
   } catch (const std::invalid_argument& error) {
     throw UsageError(error.what());
   }
   check_output(options.output);
+}
+
+int run(Options& options) {
+  check_options(options);
+  const std::unique_ptr<DumpRecorder> recorder = make_recorder(options);
+  options.settings.recorder = recorder.get();
   show_progress(fmt::format("reading {} ...", options.problem));
-  const Problem problem = read_problem(options.problem);
+  const Task task = read_task(options);
   if (!options.json) {
-    print(fmt::format("problem     {}: {}\n", options.problem, problem_text(problem)));
+    print_task(options, task);
   }
-  const int code = options.solver == "all" ? run_all(options, problem) : run_one(options, problem);
+  const int code = options.solver == "all" ? run_all(options, task) : run_one(options, task);
+  if (recorder != nullptr) {
+    print_error(summary(*recorder));
+  }
   if (std::fflush(stdout) != 0) {
     throw OutputError("standard output: not written");
   }
@@ -286,12 +380,13 @@ int main(int argc, char** argv) {
   using namespace signorini::lcp;
   Options options;
   CLI::App app(
-      "Solves a linear complementarity problem w = M z + q, 0 <= z, 0 <= w, z.w = 0 (also "
-      "with free rows) and certifies the answer.",
+      "Solves a linear complementarity problem w = M z + q, 0 <= z, 0 <= w, z.w = 0, also with "
+      "free "
+      "rows, bounds and friction cones, and certifies the answer.",
       "signorini-solve");
   app.footer(kFooter);
   app.set_version_flag("--version", std::string("signorini-solve ") + SIGNORINI_VERSION);
-  app.add_option("PROBLEM", options.problem, "the problem folder")->required();
+  app.add_option("PROBLEM", options.problem, "a problem folder or an FCLIB .hdf5 file")->required();
   app.add_option("--solver", options.solver,
                  fmt::format("auto, {} or all", fmt::join(solver_names(), ", ")))
       ->capture_default_str();
@@ -302,7 +397,12 @@ int main(int argc, char** argv) {
                  "pivots, sweeps or iterations; -1: the solver's own default")
       ->capture_default_str();
   app.add_option("--time-limit", options.settings.time_limit, "seconds, > 0 (default: none)");
+  app.add_option("--friction-law", options.friction_law,
+                 "of friction cones: coulomb or associated (default: the problem's own)");
+  app.add_option("--warm-start", options.warm_start, "file to start from, one number a line");
+  app.add_flag("--cold", options.cold, "do not use the warm start that was recorded");
   app.add_option("--output", options.output, "file for z");
+  app.add_option("--dump", options.dump, "write every solve: DIR[:OPTION,...]");
   app.add_flag("--json", options.json, "print the result as JSON");
   try {
     app.parse(argc, argv);

@@ -161,7 +161,7 @@ TEST_F(SignoriniSolve, MixedProblemGoesToPgsAndSaysSo) {
   make_mixed();
   const Outcome result = run(path());
   EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
-  EXPECT_TRUE(contains(result.out, "1 free rows")) << result.out;
+  EXPECT_TRUE(contains(result.out, "1 free row")) << result.out;
   EXPECT_TRUE(contains(result.out, "auto        pgs (solved)")) << result.out;
 }
 
@@ -246,13 +246,76 @@ TEST_F(SignoriniSolve, BadInputExitsWith65NamingFileLineAndExpectation) {
   bad("1000000000 1000000000 1\n1 1 1\n", ": expected 2 x 2");
 }
 
-TEST_F(SignoriniSolve, FrictionProblemExitsWith65NamingTheKind) {
+TEST_F(SignoriniSolve, FrictionLawIsChosenAndReported) {
   write("problem.txt", "kind fc2d\nsize 2\n");
   write("mu.mtx", "%%MatrixMarket matrix array real general\n1 1\n0.5\n");
-  const Outcome result = run(path());
-  EXPECT_EQ(result.exit_code, 65);
-  EXPECT_TRUE(contains(result.err, "kind: fc2d")) << result.err;
+  // Whether a solver takes cones or not: the program says what the problem is, and fails by name.
+  const Outcome coulomb = run(path());
+  EXPECT_TRUE(contains(coulomb.out, "1 friction cone (Coulomb law)")) << coulomb.out << coulomb.err;
+  const Outcome associated = run(path() + " --friction-law associated");
+  EXPECT_TRUE(contains(associated.out, "(associated law)")) << associated.out << associated.err;
+  EXPECT_EQ(run(path() + " --friction-law dry").exit_code, 64);
 }
+
+TEST_F(SignoriniSolve, DumpedProblemIsReplayedWithItsRecord) {
+  const std::string dump = path() + "/dump";
+  const Outcome first = run(path() + " --solver pgs --dump " + dump + ":all");
+  EXPECT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_TRUE(contains(first.err, "dump: 1 solves written to " + dump)) << first.err;
+  const Outcome again = run(dump + "/000001 --solver lemke");
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_TRUE(contains(again.out, "recorded    pgs: solved")) << again.out;
+  EXPECT_FALSE(contains(again.out, "warm start")) << again.out;
+}
+
+TEST_F(SignoriniSolve, WarmStartIsTakenFromAFileAndRecorded) {
+  write("z0.txt", "0.2857142857142857\n0.42857142857142855\n");
+  const std::string dump = path() + "/dump";
+  const Outcome first =
+      run(path() + " --solver pgs --warm-start " + path() + "/z0.txt --dump " + dump);
+  EXPECT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_TRUE(contains(first.out, "warm start  " + path() + "/z0.txt")) << first.out;
+  EXPECT_EQ(read_text(folder_.path() / "dump" / "000001" / "warm_start.txt"),
+            read_text(folder_.path() / "z0.txt"));
+  const Outcome warm = run(dump + "/000001 --solver pgs");
+  EXPECT_TRUE(contains(warm.out, "warm start  recorded with the problem")) << warm.out;
+  EXPECT_FALSE(contains(run(dump + "/000001 --cold").out, "warm start"));
+  EXPECT_EQ(run(path() + " --cold --warm-start z0.txt").exit_code, 64);
+  write("z0.txt", "1\n");
+  const Outcome wrong = run(path() + " --warm-start " + path() + "/z0.txt");
+  EXPECT_EQ(wrong.exit_code, 65);
+  EXPECT_TRUE(contains(wrong.err, "expected 2 numbers, one a line, found 1")) << wrong.err;
+}
+
+TEST_F(SignoriniSolve, EnvironmentVariableDumps) {
+  const std::string dump = path() + "/dump";
+  ::setenv("SIGNORINI_DUMP", (dump + ":unsolved").c_str(), 1);
+  const Outcome solved = run(path());
+  make_infeasible();
+  const Outcome unsolved = run(path() + " --solver lemke");
+  ::setenv("SIGNORINI_DUMP", (dump + ":often").c_str(), 1);
+  const Outcome wrong = run(path());
+  ::unsetenv("SIGNORINI_DUMP");
+  EXPECT_TRUE(contains(solved.err, "dump: 0 solves written")) << solved.err;
+  EXPECT_TRUE(contains(unsolved.err, "dump: 1 solves written")) << unsolved.err;
+  EXPECT_EQ(wrong.exit_code, 64);
+  EXPECT_TRUE(contains(wrong.err, "SIGNORINI_DUMP: expected one of all, ")) << wrong.err;
+}
+
+#ifdef SIGNORINI_HAS_HDF5
+TEST_F(SignoriniSolve, FclibFileIsSolvedAndAMalformedOneExitsWith65) {
+  const std::string dump = path() + "/dump";
+  EXPECT_EQ(run(path() + " --solver lemke --dump " + dump + ":hdf5").exit_code, 0);
+  const Outcome result = run(dump + "/000001.hdf5");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(contains(result.out, "n = 2, sparse, 4 entries")) << result.out;
+  write("broken.hdf5", "not HDF5");
+  const Outcome broken = run(path() + "/broken.hdf5");
+  EXPECT_EQ(broken.exit_code, 65);
+  EXPECT_TRUE(contains(broken.err, "broken.hdf5: expected a whole HDF5 file")) << broken.err;
+  EXPECT_EQ(run(path() + "/absent.hdf5").exit_code, 65);
+}
+#endif
 
 TEST_F(SignoriniSolve, FactoredProblemIsSolved) {
   std::filesystem::remove(folder_.path() / "W.mtx");
