@@ -57,6 +57,7 @@ class Study {
     for (const std::string_view name : lcp::solver_names()) {
       lcp::SolverSettings settings;
       settings.tolerance = options.tolerance;
+      settings.recorder = options.recorder;
       settings.max_iterations = is_by_sweeps(name) ? options.pgs_sweeps : -1;
       solvers_.push_back(lcp::make_solver(name, settings));
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <signorini/lcp/solve_recorder.h>
 #include <signorini/lcp/status.h>
 
 #include <cstdint>
@@ -19,6 +20,7 @@ struct ExactnessOptions {
   std::uint64_t seed = 1;   ///< problem k of a seed is the same whatever `problems` is
   double tolerance = 1e-8;  ///< of the solvers, and what `solved` is judged by. Dimensionless, > 0
   int pgs_sweeps = 1000;    ///< PGS, PSOR, NNCG give up here; slow convergence costs time only
+  lcp::SolveRecorder* recorder = nullptr;  ///< is told of every solve
 };
 
 /// One line of the table: how one solver ended on one family, and how often the problem had a

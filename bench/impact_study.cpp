@@ -33,7 +33,7 @@ bool shown_infeasible(lcp::Status status) {
 
 class Study {
  public:
-  explicit Study(std::uint64_t seed) : seed_(seed) {
+  explicit Study(const ImpactOptions& options) : seed_(options.seed), recorder_(options.recorder) {
     for (const ImpactLaw law : {ImpactLaw::kNewton, ImpactLaw::kNotes}) {
       for (const bool safe : {false, true}) {
         ImpactRow row;
@@ -58,6 +58,7 @@ class Study {
       settings.law = counts_.rows[r].law;
       settings.energy_safe = counts_.rows[r].energy_safe;
       settings.lcp.tolerance = kTolerance;
+      settings.lcp.recorder = recorder_;
       State state = impact.state;
       ImpactReport report;
       resolve_impact(impact.bodies, impact.contacts, settings, state, report);
@@ -142,6 +143,7 @@ class Study {
   }
 
   std::uint64_t seed_;
+  lcp::SolveRecorder* recorder_;
   ImpactCounts counts_;
   std::vector<std::vector<double>> gains_;  // above kGain, one list a row
   Eigen::Index separating_ = 0;
@@ -227,7 +229,7 @@ ImpactCounts run_impact_study(const ImpactOptions& options, std::ostream& out) {
   if (options.impacts < 0) {
     throw std::invalid_argument("impacts: must be >= 0, got " + std::to_string(options.impacts));
   }
-  Study study(options.seed);
+  Study study(options);
   for (int index = 0; index < options.impacts; ++index) {
     study.run_impact(index);
     show_progress(index + 1, options.impacts);

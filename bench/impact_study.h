@@ -14,8 +14,9 @@ namespace signorini::bench {
 /// contacts, at least 30 % of the contacts touching and separating. For each impact law, plain and
 /// energy-safe: how often and by how much kinetic energy is gained.
 struct ImpactOptions {
-  int impacts = 10000;     ///< >= 0
-  std::uint64_t seed = 1;  ///< impact k of a seed is the same whatever `impacts` is
+  int impacts = 10000;                     ///< >= 0
+  std::uint64_t seed = 1;                  ///< impact k of a seed is the same whatever `impacts` is
+  lcp::SolveRecorder* recorder = nullptr;  ///< is told of every solve
 };
 
 /// One line of the table: a law, plain or energy-safe, over all impacts. Gains are

@@ -1,9 +1,12 @@
+#include <signorini/lcp/io/dump_recorder.h>
+#include <signorini/lcp/io/input_error.h>
 #include <signorini/lcp/io/whole_file.h>
 
 #include "bench/impact_study.h"
 #include "bench/one_thread.h"
 #include "bench/peers_command.h"
 #include "bench/scaling_study.h"
+#include "bench/sequence_command.h"
 
 #ifdef SIGNORINI_HAS_GMP
 #include "bench/exactness_study.h"
@@ -16,6 +19,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <iostream>
+#include <memory>
 #include <string>
 
 namespace signorini::bench {
@@ -24,6 +28,7 @@ namespace {
 constexpr int kClaimsHold = 0;
 constexpr int kWrongClaim = 1;
 constexpr int kBadUsage = 64;
+constexpr int kBadInput = 65;
 constexpr int kFailed = 70;
 
 /// What the command line asks of a study.
@@ -61,11 +66,29 @@ void make_folder(const StudyOptions& options) {
   }
 }
 
+/// Dumps a study's solves where SIGNORINI_DUMP asks for it, and says so at the end.
+class Dump {
+ public:
+  Dump() : recorder_(lcp::dump_recorder_from_environment()) {}
+  ~Dump() {
+    if (recorder_ != nullptr) {
+      fmt::print(stderr, "{}\n", summary(*recorder_));
+    }
+  }
+  Dump(const Dump&) = delete;
+  Dump& operator=(const Dump&) = delete;
+  [[nodiscard]] lcp::SolveRecorder* recorder() const { return recorder_.get(); }
+
+ private:
+  std::unique_ptr<lcp::DumpRecorder> recorder_;
+};
+
 int run_exactness([[maybe_unused]] const StudyOptions& options) {
 #ifdef SIGNORINI_HAS_GMP
   make_folder(options);
-  const ExactnessCounts counts =
-      run_exactness_study({.problems = options.count, .seed = options.seed}, std::cout);
+  const Dump dump;
+  const ExactnessCounts counts = run_exactness_study(
+      {.problems = options.count, .seed = options.seed, .recorder = dump.recorder()}, std::cout);
   write_csv(options, "exactness", counts.to_csv());
   return counts.wrong() == 0 ? kClaimsHold : kWrongClaim;
 #else
@@ -76,8 +99,9 @@ int run_exactness([[maybe_unused]] const StudyOptions& options) {
 
 int run_impacts(const StudyOptions& options) {
   make_folder(options);
-  const ImpactCounts counts =
-      run_impact_study({.impacts = options.count, .seed = options.seed}, std::cout);
+  const Dump dump;
+  const ImpactCounts counts = run_impact_study(
+      {.impacts = options.count, .seed = options.seed, .recorder = dump.recorder()}, std::cout);
   write_csv(options, "impacts", counts.to_csv());
   return counts.passed() ? kClaimsHold : kWrongClaim;
 }
@@ -92,8 +116,10 @@ int run_scaling(const StudyOptions& options) {
 int run(int argc, char** argv) {
   CLI::App app{
       "Long studies of Signorini. Each prints a table and judges every answer it counts.\n"
-      "Exit: 0 every claim holds, 1 one was wrong, 64 bad usage, 70 the study could not run,\n"
-      "130 interrupted (what was measured is written)."};
+      "Exit: 0 every claim holds, 1 one was wrong, 2 a problem of a sequence was not solved, 64 "
+      "bad\n"
+      "usage, 65 bad input, 70 the study could not run, 130 interrupted (what was measured is "
+      "written)."};
   app.set_version_flag("--version", SIGNORINI_VERSION);
   app.require_subcommand(1);
   StudyOptions exactness{.count = 100000};
@@ -113,6 +139,7 @@ int run(int argc, char** argv) {
                               "Folder for scaling.csv, made if absent (default: print only)");
   const PeersCommand peers(app);
   const BulletSetsCommand bullet_sets(app);
+  const SequenceCommand sequence(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -126,6 +153,9 @@ int run(int argc, char** argv) {
     pin_libraries_to_one_thread(argv);
     return run_scaling(scaling);
   }
+  if (sequence.is_asked()) {
+    return sequence.run();
+  }
   return exactness_command->parsed() ? run_exactness(exactness) : run_impacts(impacts);
 }
 
@@ -135,6 +165,9 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     return signorini::bench::run(argc, argv);
+  } catch (const signorini::lcp::InputError& error) {
+    fmt::print(stderr, "signorini-bench: {}\n", error.what());
+    return signorini::bench::kBadInput;
   } catch (const std::exception& error) {
     fmt::print(stderr, "signorini-bench: {}\n", error.what());
     return signorini::bench::kFailed;

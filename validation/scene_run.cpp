@@ -61,7 +61,9 @@ Series series_of(const Track& track, const Measure& measure) {
 }  // namespace
 
 Track run_ours(const Scene& scene, const TimeStepSettings& settings, const RunOptions& options) {
-  Track track = run_signorini(scene, settings, options.stop);
+  TimeStepSettings recorded = settings;
+  recorded.lcp.recorder = options.recorder;
+  Track track = run_signorini(scene, recorded, options.stop);
   if (track.interrupted) throw RunInterrupted{};
   return track;
 }

@@ -21,6 +21,7 @@ struct RunOptions {
   std::optional<double> duration;  ///< s; overrides the scene's own
   BulletProfile profile = BulletProfile::neutral();
   const StopFlag* stop = nullptr;
+  lcp::SolveRecorder* recorder = nullptr;  ///< is told of every contact problem of ours
 };
 
 /// The run was stopped: the scene has no report.

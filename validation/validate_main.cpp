@@ -1,9 +1,14 @@
 // signorini-validate: scenes in, both engines run, checks judged, the report written.
 
+#include <signorini/lcp/solve_recorder.h>
 #include <signorini/validation/builtin_scenes.h>
 #include <signorini/validation/bullet_runner.h>
 #include <signorini/validation/input_error.h>
 #include <signorini/validation/sdf_reader.h>
+
+#ifdef SIGNORINI_HAS_IO
+#include <signorini/lcp/io/dump_recorder.h>
+#endif
 
 #include <CLI/CLI.hpp>
 #include <csignal>
@@ -99,8 +104,9 @@ std::vector<Job> load_jobs(const Arguments& arguments) {
   return jobs;
 }
 
-RunOptions run_options(const Arguments& arguments) {
+RunOptions run_options(const Arguments& arguments, signorini::lcp::SolveRecorder* recorder) {
   RunOptions options;
+  options.recorder = recorder;
   options.signorini = arguments.engine != "bullet";
   options.bullet = arguments.engine != "signorini";
   options.duration = arguments.duration;
@@ -159,8 +165,9 @@ class Progress {
   bool terminal_;
 };
 
-Report run_jobs(std::vector<Job> jobs, const Arguments& arguments) {
-  const RunOptions options = run_options(arguments);
+Report run_jobs(std::vector<Job> jobs, const Arguments& arguments,
+                signorini::lcp::SolveRecorder* recorder) {
+  const RunOptions options = run_options(arguments, recorder);
   Report report;
   report.version = SIGNORINI_VERSION;
   report.engines = fmt::format("Bullet {} (double precision), libsdformat {}", bullet_version(),
@@ -193,7 +200,13 @@ int run(const Arguments& arguments, const std::string& command) {
   // From here a stop leaves a report; before, it just ends the program.
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
-  Report report = run_jobs(std::move(jobs), arguments);
+#ifdef SIGNORINI_HAS_IO
+  const auto recorder = signorini::lcp::dump_recorder_from_environment();
+  Report report = run_jobs(std::move(jobs), arguments, recorder.get());
+  if (recorder != nullptr) fmt::print("{}\n", summary(*recorder));
+#else
+  Report report = run_jobs(std::move(jobs), arguments, nullptr);
+#endif
   report.command = command;
   for (const std::string& file : write_report(report, arguments.out)) {
     fmt::print("wrote {}\n", file);
@@ -213,7 +226,9 @@ int main(int argc, char** argv) {
       "and writes report.html, report.md and report.json.\n"
       "Exit: 0 every check passed, 1 a check failed, 64 bad usage, 65 bad or unsupported scene, "
       "130 "
-      "stopped (the report written is partial)."};
+      "stopped (the report written is partial).\n"
+      "SIGNORINI_DUMP=DIR[:OPTION,...] in the environment writes the contact problems for a replay "
+      "(signorini-solve --help)."};
   Arguments arguments;
   declare(app, arguments);
   app.set_version_flag("--version", SIGNORINI_VERSION);

@@ -66,6 +66,21 @@ TEST_F(BenchProgram, BulletSetsWritesItsCsvOrSaysThatThereIsNoBullet) {
 #endif
 }
 
+TEST_F(BenchProgram, DumpsAStudyAndReplaysItAsASequence) {
+  const std::string dump = (folder_ / "dump").string();
+  ::setenv("SIGNORINI_DUMP", (dump + ":max=5").c_str(), 1);
+  EXPECT_EQ(run("impacts --impacts 3"), 0);
+  ::unsetenv("SIGNORINI_DUMP");
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "dump" / "000005" / "record.json"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "dump" / "000006"));
+  const int code =
+      run("sequence '" + dump + "' --solver recorded --out '" + folder_.string() + "'");
+  EXPECT_TRUE(code == 0 || code == 2) << code;  // 2: an impact of the five has no answer
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "sequence.csv"));
+  EXPECT_EQ(run("sequence '" + (folder_ / "absent").string() + "'"), 65);
+  EXPECT_EQ(run("sequence"), 64);
+}
+
 #ifdef SIGNORINI_HAS_GMP
 TEST_F(BenchProgram, ExactnessWritesItsCsvAndNothingElse) {
   EXPECT_EQ(run("exactness --problems 40 --seed 5 --out '" + folder_.string() + "'"), 0);
