@@ -88,6 +88,11 @@ void Solver::solve(const Problem& problem, Result& result, const Vector* warm_st
     const Status ending =
         n == 0 ? Status::kSolved
                : iterate(problem, start_is_finite ? warm_start : nullptr, deadline, result);
+    if (!result.z.allFinite()) {
+      result.z.setZero(n);
+      result.detail += result.detail.empty() ? "" : "; ";
+      result.detail += "the iterate was not finite: z = 0 instead";
+    }
     certify_result(problem, is_solved(ending) ? Status::kNumericalBreakdown : ending, result);
     if (!start_is_finite) {
       result.detail += result.detail.empty() ? "" : "; ";

@@ -64,10 +64,11 @@ class Solver {
 
  protected:
   virtual const SolverSettings& settings() const = 0;
-  /// The iteration. Writes result.z (n finite numbers: the best iterate), result.ray if it ended on
-  /// one, result.detail and result.statistics, and returns what ended it if the certificate does
-  /// not say solved: kIterationLimit, kTimeLimit, kStalled, kNumericalBreakdown, or kRayUnproven
-  /// together with result.ray. Called with n >= 1 and finite data.
+  /// The iteration. Writes result.z (n finite numbers: the best iterate; solve() makes it 0, and
+  /// says so, where they are not finite), result.ray if it ended on one, result.detail and
+  /// result.statistics, and returns what ended it if the certificate does not say solved:
+  /// kIterationLimit, kTimeLimit, kStalled, kNumericalBreakdown, or kRayUnproven together with
+  /// result.ray. Called with n >= 1 and finite data.
   virtual Status iterate(const Problem& problem, const Vector* warm_start, const Deadline& deadline,
                          Result& result) = 0;
   /// Certifies result.z, judges it and its ray, and names the status: `ending` unless they say
