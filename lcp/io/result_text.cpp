@@ -92,6 +92,11 @@ std::string result_text(const Result& result, double tolerance) {
   if (!result.detail.empty()) {
     text += fmt::format("detail      {}\n", result.detail);
   }
+  for (const Attempt& attempt : result.attempts) {
+    text += fmt::format("tried       {} ({}): {}, unit-free {:.2e}, {:.3g} s\n", attempt.solver,
+                        attempt.reason, to_string(attempt.status), attempt.unit_free_residual,
+                        attempt.statistics.solve_seconds);
+  }
   text += fmt::format("residual    natural {:.2e} (rounding floor {:.1e}), tolerance {:.1e}\n",
                       c.natural_residual, c.natural_floor, tolerance);
   text += fmt::format("            unit-free {:.2e} (rounding floor {:.1e}), worst row {}\n",
@@ -109,14 +114,32 @@ std::string result_text(const Result& result, double tolerance) {
 }
 
 std::string results_table(std::span<const Result> results) {
-  std::string text = fmt::format("{:<22}{:<22}{:>10}{:>11}{:>14}{:>11}\n", "solver", "status",
-                                 "natural", "unit-free", "pivots/iter.", "seconds");
+  const Result* fastest = nullptr;
+  int solved = 0;
   for (const Result& result : results) {
-    text += fmt::format("{:<22}{:<22}{:>10.1e}{:>11.1e}{:>14}{:>11.3g}\n", result.solver,
-                        to_string(result.status), result.certificate.natural_residual,
-                        result.certificate.unit_free_residual, work_of(result.statistics),
-                        result.statistics.solve_seconds);
+    if (is_solved(result.status)) {
+      ++solved;
+      const double seconds = result.statistics.solve_seconds;
+      fastest =
+          fastest == nullptr || seconds < fastest->statistics.solve_seconds ? &result : fastest;
+    }
   }
+  std::string text = fmt::format("verdict     {} of {} solvers solved it", solved, results.size());
+  if (fastest != nullptr) {
+    text += fmt::format(", first {} in {:.3g} ms", fastest->solver,
+                        1e3 * fastest->statistics.solve_seconds);
+  }
+  text += fmt::format("\n\n{:<22}{:<26}{:>11}{:>11}{:>9}{:>9}{:>12}\n", "status", "solver",
+                      "unit-free", "natural", "work", "factors", "ms");
+  for (const Result& result : results) {
+    const int factors = result.statistics.factorizations;
+    text += fmt::format("{:<22}{:<26}{:>11.1e}{:>11.1e}{:>9}{:>9}{:>12.3f}\n",
+                        to_string(result.status), result.solver,
+                        result.certificate.unit_free_residual, result.certificate.natural_residual,
+                        work_of(result.statistics), factors < 0 ? "-" : std::to_string(factors),
+                        1e3 * result.statistics.solve_seconds);
+  }
+  text += "work: pivots, sweeps or iterations; the times include the certificate\n";
   for (const Result& result : results) {
     if (!result.detail.empty()) {
       text += fmt::format("{}: {}\n", result.solver, result.detail);

@@ -39,18 +39,44 @@ Json certificate_object(const Certificate& certificate) {
           {"worst_row", counter(certificate.worst_row)}};
 }
 
+Json attempt_object(const Attempt& attempt) {
+  return {{"solver", attempt.solver},
+          {"reason", attempt.reason},
+          {"status", to_string(attempt.status)},
+          {"natural_residual", number(attempt.natural_residual)},
+          {"unit_free_residual", number(attempt.unit_free_residual)},
+          {"iterations", counter(attempt.statistics.iterations)},
+          {"pivots", counter(attempt.statistics.pivots)},
+          {"factorizations", counter(attempt.statistics.factorizations)},
+          {"solve_seconds", number(attempt.statistics.solve_seconds)},
+          {"detail", attempt.detail}};
+}
+
 Json result_object(const Result& result) {
-  return {{"status", to_string(result.status)},
-          {"solved", is_solved(result.status)},
-          {"solver", result.solver},
-          {"detail", result.detail},
-          {"iterations", counter(result.statistics.iterations)},
-          {"pivots", counter(result.statistics.pivots)},
-          {"factorizations", counter(result.statistics.factorizations)},
-          {"refinements", counter(result.statistics.refinements)},
-          {"solve_seconds", number(result.statistics.solve_seconds)},
-          {"certificate", certificate_object(result.certificate)},
-          {"ray_bound", number(result.ray_bound)}};
+  Json json = {{"status", to_string(result.status)},
+               {"solved", is_solved(result.status)},
+               {"solver", result.solver},
+               {"detail", result.detail},
+               {"iterations", counter(result.statistics.iterations)},
+               {"pivots", counter(result.statistics.pivots)},
+               {"factorizations", counter(result.statistics.factorizations)},
+               {"refinements", counter(result.statistics.refinements)},
+               {"solve_seconds", number(result.statistics.solve_seconds)},
+               {"certificate", certificate_object(result.certificate)},
+               {"ray_bound", number(result.ray_bound)}};
+  if (!result.attempts.empty()) {
+    json["attempts"] = Json::array();
+    for (const Attempt& attempt : result.attempts) {
+      json["attempts"].push_back(attempt_object(attempt));
+    }
+  }
+  return json;
+}
+
+void add_law(std::string_view friction_law, Json& json) {
+  if (!friction_law.empty()) {
+    json["friction_law"] = friction_law;
+  }
 }
 
 Json array_of(std::span<const Result> results) {
@@ -80,19 +106,18 @@ void write_vector(const std::filesystem::path& file, const Vector& vector) {
   write_whole_file(file, vector_text(vector));
 }
 
-std::string result_json(const Result& result, std::span<const Result> tried, int indent) {
+std::string result_json(const Result& result, std::string_view friction_law, int indent) {
   Json json = result_object(result);
-  if (!tried.empty()) {
-    json["tried"] = array_of(tried);
-  }
+  add_law(friction_law, json);
   return text_of(json, indent);
 }
 
 std::string results_json(std::span<const Result> results, std::span<const std::string> left_out,
-                         int indent) {
+                         std::string_view friction_law, int indent) {
   Json json;
   json["results"] = array_of(results);
   json["left_out"] = std::vector<std::string>(left_out.begin(), left_out.end());
+  add_law(friction_law, json);
   return text_of(json, indent);
 }
 

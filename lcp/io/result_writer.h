@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace signorini::lcp {
 
@@ -18,19 +19,20 @@ namespace signorini::lcp {
 void write_vector(const std::filesystem::path& file, const Vector& vector);
 
 /// A result as a JSON object (without z and w): status, solver, detail, iterations, pivots,
-/// factorizations, refinements, solve_seconds, certificate (its members by their names), ray_bound.
-/// Numbers with as many digits as read back to the same bits. null: there is no such number (NaN,
-/// or a counter that the solver does not have); infinity is the string "inf" or "-inf", since JSON
-/// has no number for it.
-/// @param tried what was run before, in order, as the array `tried`; left out if empty
+/// factorizations, refinements, solve_seconds, certificate (its members by their names), ray_bound,
+/// and attempts where the solver tried others. Numbers with as many digits as read back to the same
+/// bits. null: there is no such number (NaN, or a counter that the solver does not have); infinity
+/// is the string "inf" or "-inf", since JSON has no number for it.
+/// @param friction_law of the problem's cones, as friction_law; left out if empty
 /// @param indent spaces a level, -1: all on one line
-[[nodiscard]] std::string result_json(const Result& result, std::span<const Result> tried = {},
+[[nodiscard]] std::string result_json(const Result& result, std::string_view friction_law = {},
                                       int indent = 2);
 
 /// Several results as a JSON object with the arrays `results` and `left_out`.
 /// @param left_out one line for each solver that was not run: which and why
 [[nodiscard]] std::string results_json(std::span<const Result> results,
-                                       std::span<const std::string> left_out = {}, int indent = 2);
+                                       std::span<const std::string> left_out = {},
+                                       std::string_view friction_law = {}, int indent = 2);
 
 /// A recorded solve as a JSON object: solver, settings (tolerance, max_iterations, time_limit) and
 /// result, as in result_json().

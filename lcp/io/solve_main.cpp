@@ -32,9 +32,6 @@ enum ExitCode {
   kCannotWrite = 73,
 };
 
-/// What `auto` tries, in this order, until one solves; a solver that refuses is passed over.
-constexpr std::string_view kAutoChain[] = {"lemke", "pgs"};
-
 /// Above this size `all` leaves out the rational solver unless a time limit is set: numbers grow
 /// with every pivot, and a few hundred rows take hours.
 constexpr Index kExactRowsInAll = 60;
@@ -42,8 +39,8 @@ constexpr Index kExactRowsInAll = 60;
 constexpr const char* kFooter =
     "PROBLEM is a folder with problem.txt and W.mtx, q.mtx or a factored form (docs/\n"
     "problem-folders.md), or an FCLIB file (.hdf5), local or global form.\n"
-    "--solver auto tries lemke, then pgs (bounds, free rows), until one solves; all runs every\n"
-    "solver and prints a table.\n"
+    "--solver auto chooses by size and structure, hands on what a failure reached, and lists what\n"
+    "it tried; all runs every solver and prints a table.\n"
     "A problem that was dumped with a warm start is solved with it; --warm-start FILE (one number\n"
     "a line) takes another, --cold none.\n"
     "--output gets z, one number a line, written whole or not at all: of an unsolved problem the\n"
@@ -107,8 +104,8 @@ void show_progress(const std::string& text) {
 
 void check_solver_name(const std::string& name) {
   const auto known = solver_names();
-  if (name != "auto" && name != "all" && std::ranges::find(known, name) == known.end()) {
-    throw UsageError(fmt::format("--solver: no solver is called '{}'; known: auto, {}, all", name,
+  if (name != "all" && std::ranges::find(known, name) == known.end()) {
+    throw UsageError(fmt::format("--solver: no solver is called '{}'; known: {}, all", name,
                                  fmt::join(known, ", ")));
   }
 }
@@ -136,10 +133,6 @@ Result solve_with(std::string_view name, const Problem& problem, SolverSettings 
   return result;
 }
 
-bool refuses(std::string_view name, const Problem& problem) {
-  return !make_solver(name)->refuses(problem).empty();
-}
-
 /// Endings that another solver cannot improve on.
 bool is_final(Status status) {
   return is_solved(status) || status == Status::kInfeasible || status == Status::kInvalidInput;
@@ -157,27 +150,6 @@ std::size_t best_of(const std::vector<Result>& results) {
   };
   const auto best = std::ranges::min_element(results, {}, rank);
   return static_cast<std::size_t>(best - results.begin());
-}
-
-/// Runs the chain; each unsolved end is the next one's warm start.
-std::vector<Result> solve_auto(const Task& task, const SolverSettings& settings) {
-  const Problem& problem = task.problem();
-  const Deadline deadline(settings.time_limit);
-  std::vector<Result> tried;
-  for (const std::string_view name : kAutoChain) {
-    const double left = settings.time_limit - deadline.elapsed_seconds();
-    if (refuses(name, problem) || (left <= 0.0 && !tried.empty())) {
-      continue;
-    }
-    SolverSettings own = settings;
-    own.time_limit = left > 0.0 ? left : settings.time_limit;
-    const Vector* start = tried.empty() ? task.warm_start() : &tried.back().z;
-    tried.push_back(solve_with(name, problem, own, start));
-    if (is_final(tried.back().status)) {
-      break;
-    }
-  }
-  return tried;
 }
 
 struct AllResults {
@@ -198,7 +170,7 @@ AllResults solve_all(const Task& task, const SolverSettings& settings) {
     if (why.empty()) {
       all.results.push_back(solve_with(name, problem, settings, task.warm_start()));
     } else {
-      all.left_out.push_back(fmt::format("{}: left out: {}", name, why));
+      all.left_out.push_back(fmt::format("{}: {}", name, why));
     }
   }
   return all;
@@ -232,14 +204,19 @@ int exit_code(const Result& result) {
   return result.status == Status::kInvalidInput ? kBadInput : kNotSolved;
 }
 
+/// The friction law of a problem with cones, else empty.
+std::string_view law_text(const Problem& problem) {
+  return problem.cones.empty() ? std::string_view() : to_string(problem.friction_law);
+}
+
 int run_all(const Options& options, const Task& task) {
   const AllResults all = solve_all(task, options.settings);
   if (options.json) {
-    print(results_json(all.results, all.left_out));
+    print(results_json(all.results, all.left_out, law_text(task.problem())));
   } else {
     print(results_table(all.results));
     for (const std::string& line : all.left_out) {
-      print(line + "\n");
+      print(fmt::format("left out    {}\n", line));
     }
   }
   if (all.results.empty()) {
@@ -251,31 +228,14 @@ int run_all(const Options& options, const Task& task) {
 }
 
 int run_one(const Options& options, const Task& task) {
-  std::vector<Result> tried;
-  if (options.solver == "auto") {
-    tried = solve_auto(task, options.settings);
-    if (tried.empty()) {
-      throw UsageError("--solver auto: no solver takes " + problem_text(task.problem()));
-    }
-  } else {
-    const std::string why = make_solver(options.solver)->refuses(task.problem());
-    if (!why.empty()) {
-      throw UsageError(fmt::format("--solver {}: {}", options.solver, why));
-    }
-    tried.push_back(
-        solve_with(options.solver, task.problem(), options.settings, task.warm_start()));
+  if (const std::string why = make_solver(options.solver)->refuses(task.problem()); !why.empty()) {
+    throw UsageError(fmt::format("--solver {}: {}", options.solver, why));
   }
-  const Result& result = tried[best_of(tried)];
+  const Result result =
+      solve_with(options.solver, task.problem(), options.settings, task.warm_start());
   if (options.json) {
-    print(result_json(result, tried));
+    print(result_json(result, law_text(task.problem())));
   } else {
-    if (options.solver == "auto") {
-      std::vector<std::string> names;
-      for (const Result& one : tried) {
-        names.push_back(fmt::format("{} ({})", one.solver, to_string(one.status)));
-      }
-      print(fmt::format("auto        {}\n", fmt::join(names, ", then ")));
-    }
     print(result_text(result, options.settings.tolerance));
   }
   write_output(options, result);
@@ -388,7 +348,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", std::string("signorini-solve ") + SIGNORINI_VERSION);
   app.add_option("PROBLEM", options.problem, "a problem folder or an FCLIB .hdf5 file")->required();
   app.add_option("--solver", options.solver,
-                 fmt::format("auto, {} or all", fmt::join(solver_names(), ", ")))
+                 fmt::format("{} or all", fmt::join(solver_names(), ", ")))
       ->capture_default_str();
   app.add_option("--tolerance", options.settings.tolerance,
                  "what both residuals must be at most, > 0")

@@ -682,7 +682,13 @@ TEST(ResultJson, SaysNullWhereThereIsNoNumberAndInfAsText) {
   EXPECT_EQ(json["ray_bound"], "inf");
   EXPECT_EQ(json["certificate"]["natural_residual"], 0.1);
   EXPECT_TRUE(json["certificate"]["min_z"].is_null());
-  EXPECT_FALSE(json.contains("tried"));
+  EXPECT_FALSE(json.contains("attempts"));
+  EXPECT_FALSE(json.contains("friction_law"));
+  result.attempts.emplace_back().solver = "pgs";
+  const auto with_attempts = nlohmann::json::parse(result_json(result, "Coulomb"));
+  EXPECT_EQ(with_attempts["attempts"][0]["solver"], "pgs");
+  EXPECT_TRUE(with_attempts["attempts"][0]["pivots"].is_null());
+  EXPECT_EQ(with_attempts["friction_law"], "Coulomb");
 }
 
 }  // namespace
