@@ -2,6 +2,7 @@
 #include <signorini/lcp/io/input_error.h>
 #include <signorini/lcp/io/whole_file.h>
 
+#include "bench/fuzz_command.h"
 #include "bench/impact_study.h"
 #include "bench/one_thread.h"
 #include "bench/peers_command.h"
@@ -140,6 +141,7 @@ int run(int argc, char** argv) {
   const PeersCommand peers(app);
   const BulletSetsCommand bullet_sets(app);
   const SequenceCommand sequence(app);
+  const FuzzCommand fuzz(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -155,6 +157,9 @@ int run(int argc, char** argv) {
   }
   if (sequence.is_asked()) {
     return sequence.run();
+  }
+  if (fuzz.is_asked()) {
+    return fuzz.run();
   }
   return exactness_command->parsed() ? run_exactness(exactness) : run_impacts(impacts);
 }
