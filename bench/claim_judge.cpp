@@ -34,6 +34,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kRoundingCeiling = 1e-5;
 constexpr double kScaleRounding = 1e-9;
+constexpr double kWideRounding = 0x1p-6;  // 2^-58 of |M||z|, in floors of 2^-52
 constexpr int kFloorsAllowed = 4;
 constexpr int kBits = 2048;
 
@@ -275,7 +276,9 @@ std::string wrong_residual(const Problem& problem, const Result& result, double 
                        lcp::to_nearest_double(r.natural_floor));
   }
   const bool no_q = largest_q(problem) == 0.0;
-  if (no_q ? r.unit_free != 0 : !within(r.unit_free, r.unit_free_floor, tolerance, result.status)) {
+  const mpq_class rounding = r.natural_floor * kWideRounding;  // of w in long double
+  if (no_q ? r.unit_free > rounding
+           : !within(r.unit_free, r.unit_free_floor, tolerance, result.status)) {
     return fmt::format("unit-free residual {:.3e}, certified {:.3e}, floor {:.1e}",
                        lcp::to_nearest_double(r.unit_free), result.certificate.unit_free_residual,
                        lcp::to_nearest_double(r.unit_free_floor));
