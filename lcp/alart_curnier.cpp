@@ -1,5 +1,6 @@
 #include <signorini/lcp/alart_curnier.h>
 #include <signorini/lcp/best_iterate.h>
+#include <signorini/lcp/body_newton_system.h>
 #include <signorini/lcp/group_scale.h>
 #include <signorini/lcp/newton_system.h>
 #include <signorini/lcp/number_text.h>
@@ -30,6 +31,9 @@ class AlartCurnier::Workspace {
     int steps;
   };
   void scale(const Problem& problem);
+  void scale_given(const Problem& problem);
+  void scale_bodies(const Problem& problem);
+  void multiply(const Vector& x, Vector& u);
   Inner newton(const AlartCurnierSettings& settings, double alpha, double tolerance);
   double evaluate(double alpha, const Vector& x);
   [[nodiscard]] bool solved() const {
@@ -47,16 +51,54 @@ class AlartCurnier::Workspace {
   Vector scale_, b_;  // s of a row; the scaled q
   double unit_ = 1.0;
   double rho_ = 1.0;
-  SparseMatrix W_;  // scaled
+  bool in_body_space_ = false;
+  WhitenedRows rows_;             // of a factored problem, or
+  SparseMatrix W_;                // the matrix, scaled
+  std::vector<int> group_start_;  // of rows_
+  Vector velocity_;
   AlartCurnierFunction function_;
   NewtonSystem system_;
+  BodyNewtonSystem body_system_;
   BestIterate best_;
   Vector x_, anchor_, trial_, u_, F_, dx_, z_, least_x_;
   std::vector<AlartCurnierFunction::Block> A_, B_;
   std::vector<AlartCurnierFunction::Coupling> couplings_;
 };
 
+/// A factored matrix stays factored, unless coupled limits tie rows of different groups.
 void AlartCurnier::Workspace::scale(const Problem& problem) {
+  in_body_space_ = std::holds_alternative<FactoredMatrix>(problem.M) && problem.limits.empty();
+  if (in_body_space_) {
+    scale_bodies(problem);
+  } else {
+    scale_given(problem);
+  }
+  b_ = scale_.cwiseProduct(problem.q);
+  unit_ = b_.cwiseAbs().maxCoeff();
+  unit_ = unit_ > 0.0 ? unit_ : 1.0;
+  b_ /= unit_;
+  function_.set(problem, scale_, unit_);
+  if (in_body_space_) {
+    body_system_.set(rows_, function_);
+  } else {
+    system_.set(W_, function_);
+  }
+}
+
+void AlartCurnier::Workspace::scale_bodies(const Problem& problem) {
+  group_start_.clear();
+  for (int i = 0, cone = 0; i < problem.size();) {
+    group_start_.push_back(i);
+    const bool starts_cone =
+        cone < static_cast<int>(problem.cones.size()) && problem.cones[cone].normal_row == i;
+    i += starts_cone ? problem.cones[cone++].dimension : 1;
+  }
+  group_start_.push_back(static_cast<int>(problem.size()));
+  rows_.set(std::get<FactoredMatrix>(problem.M), group_start_);
+  scale_ = rows_.scale().cwiseInverse();
+}
+
+void AlartCurnier::Workspace::scale_given(const Problem& problem) {
   group_scale(problem, scale_);
   if (const auto* factored = std::get_if<FactoredMatrix>(&problem.M)) {
     W_ = factored->form();
@@ -70,12 +112,17 @@ void AlartCurnier::Workspace::scale(const Problem& problem) {
       it.valueRef() *= scale_[it.row()] * scale_[j];
     }
   }
-  b_ = scale_.cwiseProduct(problem.q);
-  unit_ = b_.cwiseAbs().maxCoeff();
-  unit_ = unit_ > 0.0 ? unit_ : 1.0;
-  b_ /= unit_;
-  function_.set(problem, scale_, unit_);
-  system_.set(W_, function_);
+}
+
+/// u = W x, scaled.
+void AlartCurnier::Workspace::multiply(const Vector& x, Vector& u) {
+  if (!in_body_space_) {
+    u.noalias() = W_ * x;
+    return;
+  }
+  rows_.transpose_times(x, velocity_);
+  rows_.times(velocity_, u);
+  u += rows_.compliance().cwiseProduct(x);
 }
 
 double AlartCurnier::Workspace::error_of(const Vector& x) {
@@ -85,7 +132,7 @@ double AlartCurnier::Workspace::error_of(const Vector& x) {
 
 /// F_ at x. @return |F|.
 double AlartCurnier::Workspace::evaluate(double alpha, const Vector& x) {
-  u_.noalias() = W_ * x;
+  multiply(x, u_);
   u_ += b_ + alpha * (x - anchor_);
   function_.evaluate(x, u_, rho_, F_);
   return F_.norm();
@@ -108,7 +155,9 @@ AlartCurnier::Workspace::Inner AlartCurnier::Workspace::newton(const AlartCurnie
     }
     function_.differentiate(x_, u_, rho_, A_, B_, couplings_);
     ++*factorizations_;
-    if (!system_.solve(A_, B_, couplings_, alpha, F_, dx_)) {
+    const bool found = in_body_space_ ? body_system_.solve(A_, B_, alpha, F_, dx_)
+                                      : system_.solve(A_, B_, couplings_, alpha, F_, dx_);
+    if (!found) {
       break;
     }
     const double reference = *std::max_element(recent.begin(), recent.end());

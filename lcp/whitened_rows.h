@@ -26,6 +26,14 @@ namespace signorini::lcp {
 /// so that a friction cone stays a cone; D may then have a dense block for each group.
 class WhitenedRows {
  public:
+  /// A body in a group of rows.
+  struct Entry {
+    int body;
+    int dimension;
+    int offset;  ///< of the body in u
+    int column;  ///< of its first number in a row of the group
+  };
+
   /// Takes over rows and mass, every row a group of its own. Cost: O(entries of J) and, for the
   /// pattern, the pairs of blocks. Reuses memory.
   void set(const FactoredMatrix& A);
@@ -43,6 +51,15 @@ class WhitenedRows {
   void transpose_times(const Vector& x, Vector& u) const;
   /// y = G u.
   void times(const Vector& u, Vector& y) const;
+  /// Calls visit(entries, values, width) for every group: its bodies (a span of Entry) and its rows
+  /// of G, one after the other, `width` numbers each.
+  template <typename Visit>
+  void visit_groups(Visit visit) const {
+    for (int g = 0; g < groups(); ++g) {
+      visit(std::span(entries_).subspan(groups_[g].entry, groups_[g + 1].entry - groups_[g].entry),
+            values_.data() + groups_[g].values, groups_[g].width);
+    }
+  }
   /// The lower triangle of I + G^T D G for a diagonal D; the pattern is the same at every call.
   /// @param d the diagonal of D, >= 0
   const SparseMatrix& body_space_matrix(const Vector& d);
@@ -57,12 +74,6 @@ class WhitenedRows {
     int entry;   // the first
     int values;  // where the numbers of the first row start; rows follow each other
     int width;   // numbers a row
-  };
-  struct Entry {
-    int body;
-    int dimension;
-    int offset;  // of the body in u
-    int column;  // of its first number in a row of the group
   };
   void take_over(const FactoredMatrix& A, std::span<const int> group_start);
   void whiten(const FactoredMatrix& A);

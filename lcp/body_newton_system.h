@@ -1,0 +1,47 @@
+#pragma once
+
+#include <signorini/lcp/alart_curnier_function.h>
+#include <signorini/lcp/whitened_rows.h>
+
+#include <Eigen/SparseLU>
+#include <vector>
+
+namespace signorini::lcp {
+
+/// The Newton step of F(x, u) = 0, u = (G G^T + C + alpha I) x + b, in body space: with
+/// K = A + B (C + alpha), block diagonal over the groups, and D = K^-1 B,
+///
+///     (I + G^T D G) y = -G^T K^-1 F,     dx = -K^-1 (F + B G y).
+///
+/// The matrix has a row a degree of freedom of the bodies, however many contacts there are, one
+/// pattern for all steps, and is factored by a sparse LU (Eigen), since D is not symmetric where
+/// contacts slide. alpha > 0 keeps K invertible; the numbers of dx lose digits as alpha goes to 0.
+class BodyNewtonSystem {
+ public:
+  /// Keeps rows and function, whose groups must be the same.
+  void set(const WhitenedRows& rows, const AlartCurnierFunction& function);
+
+  /// @return false if a matrix is singular or the step is not finite; dx is then of no use.
+  [[nodiscard]] bool solve(const std::vector<AlartCurnierFunction::Block>& A,
+                           const std::vector<AlartCurnierFunction::Block>& B, double alpha,
+                           const Vector& F, Vector& dx);
+
+ private:
+  void set_pattern();
+  [[nodiscard]] bool invert_blocks(const std::vector<AlartCurnierFunction::Block>& A,
+                                   const std::vector<AlartCurnierFunction::Block>& B, double alpha);
+  void assemble(const std::vector<AlartCurnierFunction::Block>& B);
+
+  const WhitenedRows* rows_ = nullptr;
+  const AlartCurnierFunction* function_ = nullptr;
+  std::vector<AlartCurnierFunction::Block> inverse_;  // K^-1
+  SparseMatrix H_;
+  std::vector<int> row_offset_;  // of a pair of entries of a group: where the first body's rows
+                                 // start in the columns of the second
+  std::vector<int> diagonal_;    // position of the diagonal in every column
+  std::vector<double> product_;  // D G of a group
+  Vector h_, y_, gy_;
+  Eigen::SparseLU<SparseMatrix, Eigen::COLAMDOrdering<int>> lu_;
+};
+
+}  // namespace signorini::lcp
