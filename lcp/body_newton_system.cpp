@@ -15,9 +15,11 @@ void BodyNewtonSystem::set(const WhitenedRows& rows, const AlartCurnierFunction&
   rows_ = &rows;
   function_ = &function;
   set_pattern();
-  lu_.isSymmetric(true);
-  lu_.setPivotThreshold(0.1);
-  lu_.analyzePattern(H_);
+  if (H_.rows() > 0) {
+    lu_.isSymmetric(true);
+    lu_.setPivotThreshold(0.1);
+    lu_.analyzePattern(H_);
+  }
 }
 
 /// One dense block for every two bodies that share a group, and the diagonal.
@@ -30,10 +32,15 @@ void BodyNewtonSystem::set_pattern() {
   std::map<int, Body> bodies;  // by offset in u
   rows_->visit_groups([&bodies](Entries entries, const double*, int) {
     for (const auto& e : entries) {
+      if (e.dimension == 0) {  // no row moves this body; its offset is the next one's
+        continue;
+      }
       Body& body = bodies[e.offset];
       body.dimension = e.dimension;
       for (const auto& f : entries) {
-        body.row_offset[f.offset] = f.dimension;
+        if (f.dimension > 0) {
+          body.row_offset[f.offset] = f.dimension;
+        }
       }
     }
   });
@@ -42,9 +49,6 @@ void BodyNewtonSystem::set_pattern() {
   std::vector<int> inner;
   diagonal_.resize(n);
   for (auto& [offset, body] : bodies) {
-    if (body.dimension == 0) {
-      continue;
-    }
     for (auto& [other, start] : body.row_offset) {  // dimension becomes where it starts
       const int dimension = start;
       start = body.column_length;
@@ -66,7 +70,8 @@ void BodyNewtonSystem::set_pattern() {
   rows_->visit_groups([&](Entries entries, const double*, int) {
     for (const auto& f : entries) {
       for (const auto& e : entries) {
-        row_offset_.push_back(bodies[f.offset].row_offset[e.offset]);
+        const bool meets = e.dimension > 0 && f.dimension > 0;
+        row_offset_.push_back(meets ? bodies[f.offset].row_offset[e.offset] : 0);
       }
     }
   });

@@ -237,19 +237,7 @@ TEST(FuzzStudy, RefusesBadOptions) {
 
 class NeverALie : public testing::TestWithParam<std::string> {};
 
-/// Solvers that are known not to end on some problem of the sample, with one of them.
-std::string known_failure(const std::string& solver) {
-  if (solver == "alart-curnier" || solver == "auto") {
-    return "alart-curnier does not end on some problems: signorini-bench fuzz --solver "
-           "alart-curnier --first 109 --problems 1";
-  }
-  return "";
-}
-
 TEST_P(NeverALie, FastSample) {
-  if (const std::string known = known_failure(GetParam()); !known.empty()) {
-    GTEST_SKIP() << known;
-  }
   std::ostringstream out;
   const FuzzCounts counts = run_fuzz_study(
       {.problems = 1000, .solver = GetParam(), .max_iterations = 200, .truth_every = 10}, out);

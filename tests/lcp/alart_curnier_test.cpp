@@ -4,6 +4,7 @@
 
 #include "allocation_count.h"
 
+#include <array>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
@@ -172,6 +173,49 @@ TEST(AlartCurnier, TakesTheSparseAndTheDenseFormAlike) {
   const Result sparse = solve(problem);
   EXPECT_EQ(dense.status, Status::kSolved);
   EXPECT_EQ(sparse.z, dense.z);
+}
+
+// Two bodies, one of which no row moves; a row that moves nothing; general block sizes; compliance.
+TEST(AlartCurnier, SolvesAFactoredProblemAsItDoesTheFormedOne) {
+  std::mt19937_64 random(17);
+  std::normal_distribution<double> normal;
+  for (int trial = 0; trial < 40; ++trial) {
+    FactoredMatrix A;
+    const std::array<int, 4> sizes{6, 1, 6, 3};
+    for (const int size : sizes) {
+      Matrix root(size, size);
+      for (double& value : root.reshaped()) value = normal(random);
+      A.mass.add_inverse(Matrix(root * root.transpose() + Matrix::Identity(size, size)));
+    }
+    const int contacts = 1 + trial % 4;
+    Problem problem;
+    for (int c = 0; c < contacts; ++c) {
+      const int other = 1 + (c + trial) % 3;
+      problem.cones.push_back({A.rows(), 3, 0.2 * c});
+      for (int k = 0; k < 3; ++k) {
+        A.add_row(trial % 3 == 0 ? 0.1 : 0.0);
+        Vector values(6);
+        for (double& value : values) value = normal(random);
+        A.add_entry(0, values);
+        values.conservativeResize(sizes[other]);
+        if (trial % 5 == 0) values.setZero();
+        A.add_entry(other, values);
+      }
+    }
+    A.add_row();
+    A.add_entry(1, Vector::Zero(1));
+    Vector v(A.rows());
+    for (double& value : v) value = normal(random);
+    problem.q.resize(A.rows());
+    A.multiply(v.data(), problem.q.data());
+    problem.M = A;
+    const Result factored = solve(problem);
+    problem.M = A.form();
+    const Result formed = solve(problem);
+    EXPECT_EQ(factored.status, Status::kSolved) << trial;
+    EXPECT_EQ(formed.status, Status::kSolved) << trial;
+    EXPECT_LE((factored.w - formed.w).norm(), 1e-5 * (1.0 + formed.w.norm())) << trial;
+  }
 }
 
 TEST(AlartCurnier, StartsWarmFromItsAnswer) {
