@@ -28,6 +28,9 @@ bool ActiveSetPolish::run(const Problem& problem, const ScaledLcp& scaled, const
   scaled_ = &scaled;
   settings_ = settings;
   active_ = &active;
+  for (int i = 0; i < scaled.size(); ++i) {
+    active[i] = active[i] != 0 || is_free(i) ? 1 : 0;
+  }
   const auto solved = [&] {
     return is_solved(judge(best.certificate(), settings.tolerance, Status::kStalled));
   };
@@ -137,7 +140,8 @@ double ActiveSetPolish::evaluate() {
   for (int i = 0; i < n; ++i) {
     w_[i] += problem_->q[i];
     scaled_w_[i] = scaled_->scale_w(i, w_[i]);
-    rounded_[i] = std::max(0.0, static_cast<double>(z_[i]));
+    const double rounded = static_cast<double>(z_[i]);
+    rounded_[i] = is_free(i) ? rounded : std::max(0.0, rounded);
     if (place_[i] >= 0) {
       // A row with q_i = 0 (a friction cone) has magnitude 0 at z = 0: no error, not 0 / 0.
       const double error =
@@ -146,6 +150,10 @@ double ActiveSetPolish::evaluate() {
     }
   }
   return worst;
+}
+
+bool ActiveSetPolish::is_free(int i) const {
+  return problem_->lower.size() > 0 && problem_->lower[i] < 0.0;
 }
 
 /// Puts indices with a wrong sign on the other side: all of them, or the worst one.
@@ -162,6 +170,9 @@ bool ActiveSetPolish::change_sides(bool all) {
   double worst_size = 0.0;
   bool changed = false;
   for (int i = 0; i < scaled_->size(); ++i) {
+    if (is_free(i)) {
+      continue;
+    }
     const bool is_active = place_[i] >= 0;
     const double value = static_cast<double>(is_active ? scaled_->scale_z(i, z_[i]) : scaled_w_[i]);
     const double rounding = kWrongSign * kEpsilon * (is_active ? largest_z : magnitude_[i]);

@@ -12,6 +12,7 @@ namespace signorini::lcp {
 ///
 ///     w_i = (M z + q)_i = 0 for the active i,   z_i = 0 for the others
 ///
+/// (rows are 0 <= z_i ⊥ w_i >= 0 or free; free ones are always active)
 /// as exactly as the doubles allow: residuals from the caller's M and q in long double, iterative
 /// refinement of a z that is kept in long double. The linear system is tried by a pivoted LU in
 /// double, then in long double, then by a complete orthogonal decomposition (least norm), which is
@@ -35,6 +36,7 @@ class ActiveSetPolish {
     bool orthogonal = false;   ///< a complete orthogonal decomposition was used
   };
 
+  /// @param problem every row an LCP's or free
   /// @param active n flags, changed in place
   /// @return true if the best iterate is now solved by judge().
   bool run(const Problem& problem, const ScaledLcp& scaled, const Settings& settings,
@@ -49,6 +51,7 @@ class ActiveSetPolish {
   bool refine(const Factor& factor, Scalar);
   double evaluate();
   bool change_sides(bool all);
+  [[nodiscard]] bool is_free(int i) const;
 
   const Problem* problem_ = nullptr;
   const ScaledLcp* scaled_ = nullptr;

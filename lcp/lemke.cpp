@@ -21,13 +21,19 @@ constexpr double kRestartTolerance = 30.0;  // pivot tolerance grows by this a r
 constexpr int kFirstOtherBasis = 2;         // the restart that takes another first basis
 constexpr int kBasisTrials = 20;            // random bases tried until one is regular
 constexpr double kGoodBasis = 1e-3;         // relative error of a solve with a usable first basis
-constexpr double kTightRay = 1e-10;         // M^T y <= 0 is met to this fraction of |M|^T y
+constexpr double kFreePivot = 1e-10;  // smaller ones pass for 0 in the columns of the free rows
+constexpr double kTightRay = 1e-10;   // M^T y <= 0 is met to this fraction of |M|^T y
 
 void require(bool good, const char* setting, const char* bound, double value) {
   if (!good) {
     throw std::invalid_argument(std::string("Lemke settings: ") + setting + ": must be " + bound +
                                 ", got " + number_text(value));
   }
+}
+
+bool allows_zero(const Problem& problem) {
+  return (problem.lower.size() == 0 || (problem.lower.array() <= 0.0).all()) &&
+         (problem.upper.size() == 0 || (problem.upper.array() >= 0.0).all());
 }
 
 }  // namespace
@@ -52,23 +58,48 @@ Lemke::Lemke(const LemkeSettings& settings) : settings_(settings) {
 }
 
 std::string Lemke::refuses(const Problem& problem) const {
-  return problem.is_lcp()
-             ? ""
-             : "takes an LCP only: every row 0 <= z_i, w_i >= 0, without other bounds, "
-               "free rows or coupled limits";
+  return problem.cones.empty() ? ""
+                               : "takes bounds, free rows and coupled limits, no friction cones";
 }
 
 Status Lemke::iterate(const Problem& problem, const Vector* warm_start, const Deadline& deadline,
                       Result& result) {
+  if (LcpAugmentation::is_plain(problem)) {
+    return solve_plain(problem, warm_start, deadline, result);
+  }
+  if (problem.q.isZero(0.0) && allows_zero(problem)) {
+    result.z.setZero();  // nothing but exact zeros has a residual beside q = 0
+    return Status::kSolved;
+  }
+  augmentation_.build(problem);
+  if (warm_start != nullptr) {
+    augmentation_.carry(problem, *warm_start, carried_);
+  }
+  const Status status = solve_plain(augmentation_.augmented(),
+                                    warm_start != nullptr ? &carried_ : nullptr, deadline, result);
+  augmentation_.recover(best_.z(), result.z);
+  result.ray.resize(0);  // a ray of the augmented problem, of which nothing is judged
+  result.detail += (result.detail.empty() ? "" : "; ") + std::string("bounds as ") +
+                   std::to_string(augmentation_.augmented().size() - problem.size()) +
+                   " rows of their own";
+  return status;
+}
+
+/// The LCP with or without free rows.
+Status Lemke::solve_plain(const Problem& problem, const Vector* warm_start,
+                          const Deadline& deadline, Result& result) {
+  find_free_rows(problem);
   pivots_ = factorizations_ = refinements_ = restarts_ = other_bases_ = 0;
   early_stop_ = false;
   polish_.reset_counts();
   best_.reset(problem);
   Status status = Status::kNumericalBreakdown;
-  if ((problem.q.array() >= 0.0).all()) {
+  if (free_count_ == 0 && (problem.q.array() >= 0.0).all()) {
     status = Status::kSolved;  // z = 0
   } else if (!scaled_.assign(problem)) {
     result.detail = "M is not finite once it is formed and scaled";
+  } else if (free_count_ > 0 && !complete_free_basis()) {
+    result.detail = "the columns of the free rows are dependent";
   } else {
     status = run(problem, warm_start, deadline, result);
     describe(result);
@@ -82,12 +113,14 @@ Status Lemke::iterate(const Problem& problem, const Vector* warm_start, const De
 
 Status Lemke::run(const Problem& problem, const Vector* warm_start, const Deadline& deadline,
                   Result& result) {
-  start_.assign(problem.size(), 0);
+  start_ = free_basis_;
   if (warm_start != nullptr) {
     for (Index i = 0; i < problem.size(); ++i) {
-      start_[i] = (*warm_start)[i] > 0.0 ? 1 : 0;
+      start_[i] = (*warm_start)[i] > 0.0 || is_free_[i] != 0 ? 1 : 0;
     }
-    best_.offer(warm_start->cwiseMax(0.0));
+    best_.offer((Eigen::Map<const Eigen::Array<char, Eigen::Dynamic, 1>>(
+                     is_free_.data(), static_cast<Index>(is_free_.size())) != 0)
+                    .select(*warm_start, warm_start->cwiseMax(0.0)));
     if (polish(start_, problem, deadline)) {
       return Status::kSolved;
     }
@@ -122,7 +155,7 @@ Lemke::Ending Lemke::pivot(int attempt, const Problem& problem, const Deadline& 
   if (!start(attempt)) {
     return Ending::kRefused;
   }
-  if (x_.minCoeff() >= 0.0) {  // the first basis is complementary and feasible
+  if (is_feasible()) {  // the first basis is complementary and feasible
     return finish(problem, deadline) ? Ending::kSolved : Ending::kRefused;
   }
   if (pivots_ >= pivot_limit()) {
@@ -193,14 +226,14 @@ bool Lemke::start(int attempt) {
   if (attempt == 0 && start_from(start_)) {
     return true;
   }
-  std::fill(start_.begin(), start_.end(), 0);
+  start_ = free_basis_;
   if (attempt < kFirstOtherBasis) {
     return start_from(start_);
   }
   for (int trial = 0; trial < kBasisTrials; ++trial) {
     const double share = uniform();
-    for (char& is_active : start_) {
-      is_active = uniform() < share ? 1 : 0;
+    for (std::size_t i = 0; i < start_.size(); ++i) {
+      start_[i] = uniform() < share || is_free_[i] != 0 ? 1 : 0;
     }
     if (start_from(start_)) {
       ++other_bases_;
@@ -216,8 +249,8 @@ bool Lemke::start_from(const std::vector<char>& active) {
     return false;
   }
   ratios_.resize(scaled_.size());
-  for (double& ratio : ratios_) {
-    ratio = 1.0 + uniform();
+  for (int p = 0; p < scaled_.size(); ++p) {
+    ratios_[p] = is_free_[p] != 0 ? 0.0 : 1.0 + uniform();
   }
   basis_.multiply(ratios_, cover_);
   // A nearly singular basis gives itself away by not reproducing its own cover vector.
@@ -233,10 +266,13 @@ double Lemke::uniform() {
 }
 
 bool Lemke::enter_cover() {
-  int position = 0;
-  for (int p = 1; p < scaled_.size(); ++p) {
+  int position = kNone;
+  for (int p = 0; p < scaled_.size(); ++p) {
+    if (is_free_[p] != 0) {
+      continue;
+    }
     // Of equal ratios the last: the lexicographic choice for the perturbation (e, e^2, ...) of q.
-    if (x_[p] / ratios_[p] <= x_[position] / ratios_[position]) {
+    if (position == kNone || x_[p] / ratios_[p] <= x_[position] / ratios_[position]) {
       position = p;
     }
   }
@@ -276,14 +312,15 @@ int Lemke::choose_leaving() {
   const double zero = 1e-15 * x_.cwiseAbs().maxCoeff();
   double ratio = std::numeric_limits<double>::infinity();
   for (Index p = 0; p < x_.size(); ++p) {
-    if (y_[p] > smallest_pivot) {
+    if (y_[p] > smallest_pivot && !holds_free(static_cast<int>(p))) {
       ratio = std::min(ratio, std::max(x_[p], 0.0) / y_[p]);
     }
   }
   tied_.clear();
   for (int p = 0; p < x_.size(); ++p) {
     const double after = std::max(x_[p], 0.0) - ratio * y_[p];
-    if (y_[p] > smallest_pivot && after <= settings_.tie_tolerance * std::abs(x_[p]) + zero) {
+    if (y_[p] > smallest_pivot && !holds_free(p) &&
+        after <= settings_.tie_tolerance * std::abs(x_[p]) + zero) {
       if (p == basis_.cover_position()) {
         return p;
       }
@@ -362,7 +399,8 @@ void Lemke::offer_current() {
   for (int p = 0; p < n; ++p) {
     const int j = basis_.at(p) - n;
     if (j >= 0 && j < n) {
-      z_[j] = static_cast<double>(scaled_.unscale_z(j, std::max(x_[p], 0.0)));
+      const double x = is_free_[j] != 0 ? x_[p] : std::max(x_[p], 0.0);
+      z_[j] = static_cast<double>(scaled_.unscale_z(j, x));
     }
   }
   best_.offer(z_);
@@ -396,6 +434,86 @@ bool Lemke::ray_is_tight() {
   }
   for (int j = 0; j < n; ++j) {
     if (!(scaled_.dot_column(j, y_) <= kTightRay * scaled_.dot_absolute_column(j, y_))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void Lemke::find_free_rows(const Problem& problem) {
+  is_free_.assign(problem.size(), 0);
+  free_count_ = 0;
+  for (Index i = 0; problem.lower.size() > 0 && i < problem.size(); ++i) {
+    if (problem.lower[i] < 0.0) {
+      is_free_[i] = 1;
+      ++free_count_;
+    }
+  }
+  free_basis_ = is_free_;
+}
+
+/// Extends the free rows by rows S so that M on them is regular: each column, free ones first, is
+/// eliminated with the largest pivot of the free rows, else with that of another row i, whose z_i
+/// then becomes basic, too.
+bool Lemke::complete_free_basis() {
+  const int n = scaled_.size();
+  std::vector<int> columns;
+  std::vector<char> used(n, 0);
+  for (int i = 0; i < n; ++i) {
+    if (is_free_[i] != 0) {
+      columns.push_back(i);
+    }
+  }
+  Matrix eliminated(n, n);  // the columns so far, in the coordinates of the pivots
+  std::vector<int> pivot_rows;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    Vector a = Vector::Zero(n);
+    scaled_.add_column(columns[k], 1.0, a.data());
+    for (std::size_t e = 0; e < k; ++e) {
+      const double factor = a[pivot_rows[e]];
+      a -= factor * eliminated.col(static_cast<Index>(e));
+      a[pivot_rows[e]] = factor;
+    }
+    int pivot = kNone;
+    for (const bool among_basic : {true, false}) {
+      for (int i = 0; i < n; ++i) {
+        const bool allowed = used[i] == 0 && (free_basis_[i] != 0) == among_basic;
+        if (allowed && std::abs(a[i]) > kFreePivot &&
+            (pivot == kNone || std::abs(a[i]) > std::abs(a[pivot]))) {
+          pivot = i;
+        }
+      }
+      if (pivot != kNone) {
+        break;
+      }
+    }
+    if (pivot == kNone) {
+      return false;
+    }
+    if (free_basis_[pivot] == 0) {
+      free_basis_[pivot] = 1;
+      columns.push_back(pivot);
+    }
+    used[pivot] = 1;
+    pivot_rows.push_back(pivot);
+    for (int i = 0; i < n; ++i) {
+      a[i] = used[i] != 0 && i != pivot ? 0.0 : a[i] / a[pivot];
+    }
+    a[pivot] = 0.0;
+    eliminated.col(static_cast<Index>(k)) = a;
+  }
+  return true;
+}
+
+bool Lemke::holds_free(int position) const {
+  const int j = basis_.at(position) - scaled_.size();
+  return j >= 0 && j < scaled_.size() && is_free_[j] != 0;
+}
+
+/// No basic variable that must not be negative is.
+bool Lemke::is_feasible() const {
+  for (int p = 0; p < scaled_.size(); ++p) {
+    if (x_[p] < 0.0 && !holds_free(p)) {
       return false;
     }
   }

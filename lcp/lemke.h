@@ -3,6 +3,7 @@
 #include <signorini/lcp/active_set_polish.h>
 #include <signorini/lcp/basis_factor.h>
 #include <signorini/lcp/best_iterate.h>
+#include <signorini/lcp/lcp_augmentation.h>
 #include <signorini/lcp/scaled_lcp.h>
 #include <signorini/lcp/solver.h>
 
@@ -31,7 +32,7 @@ struct LemkeSettings : SolverSettings {
   /// How often the pivoting may start again when an ending is not confirmed by the certificate or
   /// by the ray's verdict, >= 0: with another cover vector and a larger pivot tolerance, from the
   /// second time on also from another complementary basis.
-  int restarts = 6;
+  int restarts = 16;
   /// Rounds of the final active-set polish, >= 0. With 0 the result is plain Lemke's.
   int polish_rounds = 20;
 
@@ -61,6 +62,12 @@ struct LemkeSettings : SolverSettings {
 ///   is Lemke's method for the principal transform of the problem, and solves some that it does
 ///   not, bimatrix games for example). Both are named in Result::detail.
 ///
+/// **Mixed problems.** A free row (w_i = 0) has its z_i in every basis, where it blocks nothing;
+/// the first basis is completed by other z_i where M on the free rows is singular (circuits).
+/// Bounds and coupled limits become rows of their own (LcpAugmentation), so that a coupled box
+/// friction problem is solved as it stands. Rays are judged for an LCP only; else the ending is
+/// kRayUnproven without a ray.
+///
 /// A warm start gives the first basis: z_i > 0 active. If its active set solves the problem no
 /// pivot is made; if its basis is singular it is not used.
 ///
@@ -86,6 +93,12 @@ class Lemke : public Solver {
   /// How one run of the pivoting ended. kRefused: numerical trouble, or the certificate refused.
   enum class Ending { kSolved, kRefused, kRay, kLimit, kTime };
 
+  Status solve_plain(const Problem& problem, const Vector* warm_start, const Deadline& deadline,
+                     Result& result);
+  void find_free_rows(const Problem& problem);
+  bool complete_free_basis();
+  [[nodiscard]] bool holds_free(int position) const;
+  [[nodiscard]] bool is_feasible() const;
   Status run(const Problem& problem, const Vector* warm_start, const Deadline& deadline,
              Result& result);
   Ending pivot(int attempt, const Problem& problem, const Deadline& deadline);
@@ -113,6 +126,12 @@ class Lemke : public Solver {
   BasisFactor basis_;
   ActiveSetPolish polish_;
   BestIterate best_;
+
+  LcpAugmentation augmentation_;
+  Vector carried_;
+  std::vector<char> is_free_;
+  std::vector<char> free_basis_;  // the free rows and those that make M on them regular
+  int free_count_ = 0;
 
   // One run of the pivoting.
   double pivot_tolerance_ = 0.0;

@@ -367,14 +367,110 @@ TEST(Lemke, AWrongOrUselessWarmStartDoesNoHarm) {
   }
 }
 
-TEST(Lemke, RefusesWhatIsNoLcp) {
+TEST(Lemke, RefusesCones) {
   Problem problem = fathi(3);
-  problem.lower = Vector{{0.0, -kInfinity, 0.0}};
+  problem.cones.push_back({0, 3, 0.5});
   Lemke lemke;
   Result result;
   EXPECT_NE(lemke.refuses(problem), "");
   EXPECT_THROW(lemke.solve(problem, result), std::invalid_argument);
   EXPECT_EQ(result.status, Status::kNotRun);
+}
+
+/// The lexicographic path from the cover (1, .., 1) takes 2^n - 1 pivots on these; the random cover
+/// of the first run takes at most n + 1.
+TEST(Lemke, ExponentialExamplesTakeFewPivots) {
+  for (const int n : {5, 10, 20, 30}) {
+    Problem turned = murty(n);
+    turned.q.reverseInPlace();
+    Problem other = fathi(n);
+    const Matrix L = std::get<Matrix>(murty(n).M);
+    other.M = Matrix(L * L.transpose());
+    Problem powers = fathi(n);
+    powers.q = murty(n).q;
+    for (const Problem& problem : {murty(n), turned, fathi(n), other, powers}) {
+      const Result result = solve(problem);
+      EXPECT_EQ(result.status, Status::kSolved) << n;
+      EXPECT_LE(result.statistics.pivots, 2 * n) << n;
+    }
+  }
+}
+
+Matrix random_semidefinite(int n, std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  const Matrix J = Matrix::NullaryExpr(n, (n + 1) / 2, [&] { return normal(random); });
+  return J * J.transpose();
+}
+
+/// Boxes with and without ends, free rows, a skew part; solvable by construction, M singular.
+TEST(Lemke, MixedProblemsWithBounds) {
+  std::mt19937 random(17);
+  std::uniform_real_distribution<double> uniform;
+  for (int trial = 0; trial < 100; ++trial) {
+    const int n = 2 + trial % 12;
+    Matrix M = random_semidefinite(n, random);
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < i; ++j) {
+        const double skew = uniform(random) - 0.5;
+        M(i, j) += skew;
+        M(j, i) -= skew;
+      }
+    }
+    Problem problem = lcp(M, Vector::Zero(n));
+    problem.lower.setZero(n);
+    problem.upper.setConstant(n, kInfinity);
+    Vector x(n);
+    Vector r = Vector::Zero(n);
+    for (int i = 0; i < n; ++i) {
+      const double kind = uniform(random);
+      problem.lower[i] = kind < 0.3 ? -kInfinity : -uniform(random);
+      problem.upper[i] = kind < 0.15 || kind > 0.7 ? kInfinity : uniform(random);
+      const bool is_low = problem.lower[i] > -kInfinity && uniform(random) < 0.3;
+      const bool is_high = !is_low && problem.upper[i] < kInfinity && uniform(random) < 0.3;
+      x[i] = is_low ? problem.lower[i] : is_high ? problem.upper[i] : 0.0;
+      r[i] = is_low ? uniform(random) : is_high ? -uniform(random) : 0.0;
+    }
+    problem.q = r - M * x;
+    const Result result = solve(problem);
+    EXPECT_TRUE(is_solved(result.status))
+        << trial << ": " << to_string(result.status) << ", " << result.detail;
+    const Result warm = solve(problem, {}, &result.z);
+    EXPECT_TRUE(is_solved(warm.status)) << trial;
+  }
+}
+
+/// M on the free rows is zero (a constraint and its multiplier): z_0 alone makes no basis.
+TEST(Lemke, AFreeRowWithoutADiagonalTakesAnotherRowIntoTheBasis) {
+  Problem problem = lcp(Matrix{{0, 1}, {-1, 2}}, Vector{{-3.0, 1.0}});
+  problem.lower = Vector{{-kInfinity, 0.0}};
+  const Result result = solve(problem);
+  EXPECT_EQ(result.status, Status::kSolved);
+  EXPECT_NEAR(result.z[1], 3.0, 1e-15);
+  EXPECT_NEAR(result.z[0], 7.0, 1e-15);
+}
+
+TEST(Lemke, DependentFreeColumnsAreNamed) {
+  Problem problem = lcp(Matrix{{1, 1}, {1, 1}}, Vector{{-1.0, -2.0}});
+  problem.lower = Vector{{-kInfinity, -kInfinity}};
+  const Result result = solve(problem);
+  EXPECT_EQ(result.status, Status::kNumericalBreakdown);
+  EXPECT_NE(result.detail.find("free rows are dependent"), std::string::npos) << result.detail;
+}
+
+/// |z_t| <= mu z_n with the z_n of the solution, exactly: sticking, sliding, off the ground.
+TEST(Lemke, CoupledLimitsAreSolvedExactly) {
+  const Matrix M{{2, 0.3, 0}, {0.3, 1, 0.1}, {0, 0.1, 1}};
+  for (const double slide : {0.0, 0.1, 0.4, -5.0}) {
+    for (const double normal : {-1.0, 1.0}) {
+      Problem problem = lcp(M, Vector{{normal, slide, -0.5 * slide}});
+      problem.limits = {{1, 0, 0.5}, {2, 0, 0.5}};
+      const Result result = solve(problem);
+      EXPECT_EQ(result.status, Status::kSolved) << slide << ", " << normal;
+      EXPECT_LE(result.z.tail(2).cwiseAbs().maxCoeff(), 0.5 * result.z[0] + 1e-15);
+      const Result warm = solve(problem, {}, &result.z);
+      EXPECT_EQ(warm.status, Status::kSolved);
+    }
+  }
 }
 
 TEST(Lemke, RefusesSettingsOutOfRangeByName) {

@@ -102,6 +102,7 @@ TEST(RealProblems, TheCollectionIsThere) {
     GTEST_SKIP() << "../shared is absent";
   }
   EXPECT_EQ(folders("contact-problems", 600).size(), 38U);
+  EXPECT_EQ(folders("contact-problems", 600, "mlcp").size(), 8U);
   EXPECT_EQ(folders("generated", 1024).size(), 10U);
 }
 
@@ -114,6 +115,11 @@ TEST_P(LemkeSolves, Certified) {
 
 INSTANTIATE_TEST_SUITE_P(RealProblems, LemkeSolves,
                          testing::ValuesIn(all_folders(kMaxRows, kMaxGeneratedRows)), test_name);
+
+/// Electrical circuits: free rows, nonsymmetric M with zeros on its diagonal.
+INSTANTIATE_TEST_SUITE_P(RealMixedProblems, LemkeSolves,
+                         testing::ValuesIn(folders("contact-problems", kMaxRows, "mlcp")),
+                         test_name);
 
 /// A solver that does not solve a problem, by the problem's name, and why. Whoever solves it after
 /// all is told to take it off the list.
