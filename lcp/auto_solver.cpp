@@ -14,7 +14,14 @@ constexpr Index kSmall = 100;                 // rows up to which dense pivoting
 constexpr Index kStructuredLemkeRows = 2000;  // a pivot costs up to n^2 / 2
 constexpr Index kLemkeRows = 1000;            // the same, with larger constants
 constexpr double kMassRatioForSweeps = 1e3;   // above it sweeps stall
-constexpr int kFirstSweeps = 32;
+constexpr int kFirstSweeps = 48;
+// An interior point of this many rows costs a few milliseconds: sweeps only win where little
+// accuracy is asked.
+constexpr Index kRowsForAccurateSweeps = 5000;
+constexpr double kRoughTolerance = 1e-5;
+constexpr double kCaution = 1.5;  // rates fall as sweeps go on
+// From an iterate worse than this the interior point needs more factorisations than from none.
+constexpr double kWarmEnough = 1e-4;
 
 bool is_symmetric(const Matrix& M) {
   for (Index j = 0; j < M.cols(); ++j) {
@@ -100,8 +107,10 @@ void AutoSolver::choose(const Problem& problem) {
     chain_.push_back({"dantzig", "symmetric and small"});
     chain_.push_back({"structured-lemke", "symmetric and small"});
   } else if (factored) {
+    const bool sweeps_may_win =
+        settings_.tolerance >= kRoughTolerance || n > kRowsForAccurateSweeps;
     sweeps_first_ =
-        settings_.most_sweeps > 0 &&
+        settings_.most_sweeps > 0 && sweeps_may_win &&
         mass_ratio(std::get<FactoredMatrix>(problem.M).mass, unit_, column_) <= kMassRatioForSweeps;
     chain_.push_back({"interior-point", "factored and large"});
   }
@@ -145,7 +154,9 @@ bool AutoSolver::attempt(const Problem& problem, const Step& step, int max_itera
   if (!tried.refuses(problem).empty()) {
     return false;
   }
-  tried.solve(problem, one_, has_start_ ? &start_ : nullptr);
+  const bool start_helps =
+      step.solver != "interior-point" || best_solver_.empty() || best_merit_ <= kWarmEnough;
+  tried.solve(problem, one_, has_start_ && start_helps ? &start_ : nullptr);
   result.attempts.push_back({step.solver, step.reason, one_.status,
                              one_.certificate.natural_residual, one_.certificate.unit_free_residual,
                              one_.statistics, one_.detail});
@@ -171,25 +182,21 @@ bool AutoSolver::attempt(const Problem& problem, const Step& step, int max_itera
   return is_solved(one_.status) || one_.status == Status::kInfeasible;
 }
 
-/// Sweeps in pieces of doubling length, while the last piece promises an end.
+/// Some sweeps, twice as many, and the rest of them if the rate at which the residual fell in the
+/// second piece promises the tolerance in time.
 bool AutoSolver::sweep(const Problem& problem, const Deadline& deadline, Result& result) {
-  double before = kInfinity;
-  for (int sweeps = kFirstSweeps, done = 0; done < settings_.most_sweeps; sweeps *= 2) {
-    if (attempt(problem, {"pgs", done == 0 ? "a few sweeps first" : "its residual falls fast"},
-                sweeps, deadline, result)) {
-      return true;
-    }
-    done += sweeps;
-    const double after = BestIterate::merit(one_.certificate);
-    const double rate = std::isfinite(before) ? std::log(before / after) / sweeps : 0.0;
-    const double needed = std::log(after / settings_.tolerance);
-    const bool promises = rate * (settings_.most_sweeps - done) > needed;
-    if (done > kFirstSweeps && !promises) {
-      return false;
-    }
-    before = after;
+  if (attempt(problem, {"nncg", "a few sweeps first"}, kFirstSweeps, deadline, result)) {
+    return true;
   }
-  return false;
+  const double before = BestIterate::merit(one_.certificate);
+  if (attempt(problem, {"nncg", "to see its rate"}, 2 * kFirstSweeps, deadline, result)) {
+    return true;
+  }
+  const double after = BestIterate::merit(one_.certificate);
+  const double fallen = std::log(before / after) / (2 * kFirstSweeps);
+  const double needed = std::log(after / settings_.tolerance) / settings_.most_sweeps;
+  return fallen > kCaution * needed && attempt(problem, {"nncg", "its residual falls fast"},
+                                               settings_.most_sweeps, deadline, result);
 }
 
 Status AutoSolver::iterate(const Problem& problem, const Vector* warm_start,

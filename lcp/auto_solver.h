@@ -11,9 +11,9 @@ namespace signorini::lcp {
 
 /// Settings of AutoSolver. max_iterations is handed to every solver tried, in its own unit.
 struct AutoSettings : SolverSettings {
-  /// Plain sweeps are tried first, and gone on with while the residual's fall over the last ones
-  /// promises the tolerance within this many; >= 0, 0: never. Larger: more is lost where they
-  /// stall, more won where they do not. At 1000 rows 500 sweeps cost about one interior point.
+  /// Where sweeps may win, a few are tried first, and gone on with while their residual promises
+  /// the tolerance within this many; >= 0, 0: never. Larger: more is lost where they stall, more
+  /// won where they do not.
   int most_sweeps = 500;
 
   /// @throws std::invalid_argument that names the setting, its value and the bound.
@@ -29,16 +29,19 @@ struct AutoSettings : SolverSettings {
 /// |---|---|
 /// | friction cones | alart-curnier |
 /// | symmetric M, n <= 100 | dantzig, structured-lemke, alart-curnier, lemke, pgs |
-/// | factored M, n > 100 | pgs in pieces while it promises to end soon (not above a mass ratio of
-/// 1e3), interior-point, alart-curnier, structured-lemke, lemke, pgs |
+/// | factored M, n > 100 | nncg, for a few sweeps and then if they promise to end soon (with a
+/// tolerance of 1e-5 or more, or n > 5000; mass ratio <= 1e3), interior-point, alart-curnier,
+/// structured-lemke, lemke, pgs |
 /// | symmetric M given whole, n > 100 | alart-curnier, structured-lemke, lemke, pgs |
 /// | other M | alart-curnier, lemke, pgs |
 ///
 /// Solvers that refuse a problem are passed over; lemke only up to 1000 rows, structured-lemke up
-/// to 2000. Each starts from the best iterate so far. result.attempts lists every one tried, with
-/// the reason, status, residuals, cost and time; result.solver names the one whose iterate is
-/// returned ("auto: pgs"), and the statistics are sums over the attempts. If none solves, z is the
-/// best iterate, and a ray that any of them proved is kept.
+/// to 2000. Each starts from the best iterate so far (the interior
+/// point only from one with residuals below 1e-4, being slower from a worse one than from none).
+/// result.attempts lists every one tried, with the reason, status, residuals, cost and time;
+/// result.solver names the one whose iterate is returned ("auto: pgs"), and the statistics are sums
+/// over the attempts. If none solves, z is the best iterate, and a ray that any of them proved is
+/// kept.
 class AutoSolver : public Solver {
  public:
   /// @throws std::invalid_argument for a setting out of its range.

@@ -212,9 +212,9 @@ TEST_F(SignoriniSolve, UnknownSolverExitsWith64AndListsTheKnownOnes) {
 
 TEST_F(SignoriniSolve, SolverThatCannotTakeTheProblemExitsWith64) {
   make_mixed();
-  const Outcome result = run(path() + " --solver lemke");
+  const Outcome result = run(path() + " --solver apgd");  // its M is given whole
   EXPECT_EQ(result.exit_code, 64);
-  EXPECT_TRUE(contains(result.err, "--solver lemke: ")) << result.err;
+  EXPECT_TRUE(contains(result.err, "--solver apgd: ")) << result.err;
 }
 
 TEST_F(SignoriniSolve, MissingFilesExitWith65AndAreNamed) {
