@@ -104,7 +104,35 @@ TEST(RealProblems, TheCollectionIsThere) {
   EXPECT_EQ(folders("contact-problems", 600).size(), 38U);
   EXPECT_EQ(folders("contact-problems", 600, "mlcp").size(), 8U);
   EXPECT_EQ(folders("generated", 1024).size(), 10U);
+  EXPECT_EQ(folders("contact-problems", 5000).size(), 40U);
+  EXPECT_EQ(folders("contact-problems", 5000, "fc2d").size(), 7U);
+  EXPECT_EQ(folders("contact-problems", 5000, "fc3d").size(), 25U);
 }
+
+/// Every problem of the collection: LCPs, mixed ones, and Coulomb friction in the plane and in
+/// space.
+std::vector<Folder> every_folder() {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  constexpr int kRows = 120;
+#else
+  constexpr int kRows = 5000;
+#endif
+  std::vector<Folder> found = all_folders(kRows, kRows);
+  for (const char* kind : {"mlcp", "fc2d", "fc3d"}) {
+    const std::vector<Folder> more = folders("contact-problems", kRows, kind);
+    found.insert(found.end(), more.begin(), more.end());
+  }
+  return found;
+}
+
+class AutoSolves : public testing::TestWithParam<Folder> {};
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(AutoSolves);
+
+TEST_P(AutoSolves, Certified) {
+  expect_certified(solve("auto", read_problem(GetParam().path)));
+}
+
+INSTANTIATE_TEST_SUITE_P(RealProblems, AutoSolves, testing::ValuesIn(every_folder()), test_name);
 
 class LemkeSolves : public testing::TestWithParam<Folder> {};
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(LemkeSolves);
