@@ -100,6 +100,7 @@ void AutoSolver::choose(const Problem& problem) {
   sweeps_first_ = false;
   if (!problem.cones.empty()) {
     chain_.push_back({"alart-curnier", "friction cones"});
+    chain_.push_back({"nsgs", "friction cones"});
     return;
   }
   const bool symmetric = std::visit([](const auto& M) { return is_symmetric(M); }, problem.M);

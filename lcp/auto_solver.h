@@ -27,7 +27,7 @@ struct AutoSettings : SolverSettings {
 ///
 /// | problem | tried in this order |
 /// |---|---|
-/// | friction cones | alart-curnier |
+/// | friction cones | alart-curnier, nsgs |
 /// | symmetric M, n <= 100 | dantzig, structured-lemke, alart-curnier, lemke, pgs |
 /// | factored M, n > 100 | nncg, for a few sweeps and then if they promise to end soon (with a
 /// tolerance of 1e-5 or more, or n > 5000; mass ratio <= 1e3), interior-point, alart-curnier,

@@ -60,14 +60,17 @@ double largest_eigenvalue(const Eigen::Matrix3d& block, int d) {
   return most > 0.0 ? most : 1.0;
 }
 
+Eigen::Matrix3d diagonal_block(const MatrixForm& M, int first, int d) {
+  return std::visit([=](const auto& form) { return block_of(form, first, d); }, M);
+}
+
 void group_scale(const Problem& problem, Vector& s) {
   diagonal(problem.M, s);
   for (double& value : s) {
     value = value > 0.0 ? 1.0 / std::sqrt(value) : 1.0;
   }
   for (const FrictionCone& cone : problem.cones) {
-    const Eigen::Matrix3d block = std::visit(
-        [&cone](const auto& M) { return block_of(M, cone.normal_row, cone.dimension); }, problem.M);
+    const Eigen::Matrix3d block = diagonal_block(problem.M, cone.normal_row, cone.dimension);
     s.segment(cone.normal_row, cone.dimension)
         .setConstant(1.0 / std::sqrt(largest_eigenvalue(block, cone.dimension)));
   }

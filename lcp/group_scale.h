@@ -8,6 +8,10 @@ namespace signorini::lcp {
 /// @param d 2 or 3
 [[nodiscard]] double largest_eigenvalue(const Eigen::Matrix3d& block, int d);
 
+/// The d x d block of M at row and column `first`, in the top left corner; zeros elsewhere.
+/// @param d 1, 2 or 3
+[[nodiscard]] Eigen::Matrix3d diagonal_block(const MatrixForm& M, int first, int d);
+
 /// Numbers that make every row, and every cone as a whole, comparable: s_i = 1 / sqrt(D_i), D of
 /// Certificate, so that the diagonal entries of diag(s) M diag(s), and of its cone blocks the
 /// largest eigenvalue, are 1. The rows of a cone share one s, which keeps the cone as it is.

@@ -5,6 +5,7 @@
 #include <signorini/lcp/interior_point.h>
 #include <signorini/lcp/lemke.h>
 #include <signorini/lcp/nncg.h>
+#include <signorini/lcp/nsgs.h>
 #include <signorini/lcp/pgs.h>
 #include <signorini/lcp/psor.h>
 #include <signorini/lcp/solver.h>
@@ -50,6 +51,7 @@ constexpr std::array kEntries = {
     Entry{"apgd", &make<Apgd, ApgdSettings>},
     Entry{"dantzig", &make<Dantzig, DantzigSettings>},
     Entry{"alart-curnier", &make<AlartCurnier, AlartCurnierSettings>},
+    Entry{"nsgs", &make<Nsgs, NsgsSettings>},
     Entry{"pgs", &make<Pgs, PgsSettings>},
     Entry{"pgs-float", &make_float<Pgs, PgsSettings>},
     Entry{"symmetric-pgs", &make<SymmetricPgs, SymmetricPgsSettings>},
