@@ -15,6 +15,9 @@ constexpr double kFloorsAllowed = 4.0;
 // No rounding floor excuses a residual above this: where z is so large that |M||z| has no digits
 // left beside q, the floor is large too, and an infeasible problem would pass for a rounded one.
 constexpr double kRoundingCeiling = 1e-5;
+// What the residual itself may have lost to long double's rounding, in floors (which are double's):
+// 2^-11, and some for the length of the sums.
+constexpr double kOwnRounding = 0x1p-10;
 
 Certificate refuse() {
   Certificate certificate;
@@ -153,23 +156,34 @@ Certifier::Measure Certifier::measure_cone(const Problem& problem, std::size_t c
   if (problem.friction_law == FrictionLaw::kCoulomb) {
     w[0] += mu * tangential_norm(d, w.data());
   }
-  const auto norm = [d](const std::array<long double, 3>& v) {
-    return std::hypot(v[0], tangential_norm(d, v.data()));
-  };
-  const auto step = [&](long double scale) {  // 0 exactly where the contact is solved
+  // z - P_K(x), x = z - w / scale, by Moreau as w / scale + (x - P_K(x)): nothing of w is lost
+  // beside a z that is far larger.
+  const long double tangential = tangential_norm(d, z);
+  const auto step = [&](long double scale) {
     std::array<long double, 3> moved{};
-    std::array<long double, 3> nearest{};
+    std::array<long double, 3> rest{};
+    long double across = 0.0L;  // |x_T| - |z_T|, times their sum
     for (int k = 0; k < d; ++k) {
-      moved[k] = z[k] - w[k] / scale;
+      rest[k] = w[k] / scale;
+      moved[k] = z[k] - rest[k];
+      across += k > 0 ? rest[k] * (rest[k] - 2.0L * z[k]) : 0.0L;
     }
-    if (tangential_norm(d, moved.data()) <= mu * moved[0]) {
-      return norm(w) / scale;
+    const long double moved_tangential = tangential_norm(d, moved.data());
+    const long double sum_of_norms = moved_tangential + tangential;
+    const long double outside = (tangential - mu * z[0]) + mu * rest[0] +
+                                (sum_of_norms > 0.0L ? across / sum_of_norms : 0.0L);
+    if (outside > 0.0L) {
+      if (!(moved[0] + mu * moved_tangential > 0.0L)) {  // P_K(x) = 0
+        std::copy(z, z + d, rest.begin());
+      } else {
+        const long double distance = outside / (1.0L + mu * mu);
+        rest[0] -= mu * distance;
+        for (int k = 1; k < d; ++k) {
+          rest[k] += distance * (moved[k] / moved_tangential);
+        }
+      }
     }
-    project_on_cone(mu, d, moved.data(), nearest.data());
-    for (int k = 0; k < d; ++k) {
-      moved[k] = z[k] - nearest[k];
-    }
-    return norm(moved);
+    return std::hypot(rest[0], tangential_norm(d, rest.data()));
   };
   const long double scale = scale_[first];
   sum.natural = step(1.0L);
@@ -182,6 +196,8 @@ Certifier::Measure Certifier::measure_cone(const Problem& problem, std::size_t c
     sum.z_dot_w += z[k] * w[k];
   }
   sum.backward = sum.unit_free > 0.0L ? sum.unit_free / (scale * z_size + size) : 0.0L;
+  sum.boundary = std::max(tangential, mu * std::abs(z[0]));
+  sum.scaled_boundary = scale * sum.boundary;
   sum.min_z = static_cast<double>(z[0]);
   sum.cone_violation = static_cast<double>(cone_violation(mu, d, z));
   return sum;
@@ -222,14 +238,15 @@ void Certifier::Total::add(int row, const Measure& measure, long double row_size
   most.min_z = std::fmin(most.min_z, measure.min_z);
   most.min_w = std::fmin(most.min_w, measure.min_w);
   most.cone_violation = std::fmax(most.cone_violation, measure.cone_violation);
-  size = std::max(size, row_size);
+  size = std::max({size, row_size, measure.scaled_boundary});
+  natural_size = std::max({natural_size, row_size, measure.boundary});
   q_inf = std::max(q_inf, std::abs(q));
 }
 
 Certificate Certifier::Total::certificate() const {
   Certificate result;
   result.natural_residual = static_cast<double>(most.natural / (1.0L + q_inf));
-  result.natural_floor = static_cast<double>(kEpsilon * size / (1.0L + q_inf));
+  result.natural_floor = static_cast<double>(kEpsilon * natural_size / (1.0L + q_inf));
   if (q_inf > 0.0) {
     result.unit_free_residual = static_cast<double>(most.unit_free / q_inf);
     result.rounding_floor = static_cast<double>(kEpsilon * size / q_inf);
@@ -284,8 +301,11 @@ Certificate certify(const Problem& problem, const VectorRef& z, Vector* w) {
 }
 
 Status judge(const Certificate& certificate, double tolerance, Status otherwise) {
-  const double natural = certificate.natural_residual;
-  const double unit_free = certificate.unit_free_residual;
+  const auto at_most = [](double residual, double floor) {  // NaN makes it NaN
+    return residual + kOwnRounding * floor;
+  };
+  const double natural = at_most(certificate.natural_residual, certificate.natural_floor);
+  const double unit_free = at_most(certificate.unit_free_residual, certificate.rounding_floor);
   if (natural <= tolerance && unit_free <= tolerance) {  // false for NaN
     return Status::kSolved;
   }

@@ -33,10 +33,11 @@ struct Certificate {
   /// +infinity otherwise. A cone counts as one row, D_c |r_c(D_c)|.
   double unit_free_residual = kNaN;
   /// eps max_i (|M||z| + |q|)_i / |q|_inf: what rounding z and w to double costs the unit-free
-  /// residual. No solver that returns doubles can be asked for much less.
+  /// residual. No solver that returns doubles can be asked for much less. Cones add
+  /// eps D_c max(|z_T|, mu |z_N|) / |q|_inf.
   double rounding_floor = kNaN;
   /// The same rounding error in the terms of the natural residual:
-  /// eps max_i (|M||z| + |q|)_i / (1 + |q|_inf).
+  /// eps max_i (|M||z| + |q|)_i / (1 + |q|_inf), cones eps max(|z_T|, mu |z_N|) / (1 + |q|_inf).
   double natural_floor = kNaN;
   /// max_i |D_i r_i(D_i)| / (D_i |z_i| + (|M||z|)_i + |q_i|): small when z is exact for slightly
   /// other data.
@@ -76,6 +77,8 @@ class Certifier {
     long double unit_free = 0.0L;  // D |r(D)|
     long double backward = 0.0L;
     long double z_dot_w = 0.0L;
+    long double boundary = 0.0L;         // of a cone: max(|z_T|, mu |z_N|), and
+    long double scaled_boundary = 0.0L;  // D times it: what rounding z does to z - P_K
     double min_z = Certificate::kNaN;
     double min_w = Certificate::kNaN;
     double cone_violation = Certificate::kNaN;
@@ -84,6 +87,7 @@ class Certifier {
   struct Total {
     Measure most;  // of the rows; z_dot_w: the sum
     long double size = 0.0L;
+    long double natural_size = 0.0L;
     double q_inf = 0.0;
     int worst_row = -1;
     void add(int row, const Measure& measure, long double row_size, double q);
@@ -119,7 +123,8 @@ class Certifier {
 
 /// The only definition of "solved": kSolved if both residuals are <= tolerance; else
 /// kSolvedToRounding if each residual is <= tolerance, or <= 4 of its floors and <= 1e-5 (a floor
-/// above that says that z is too large to mean anything beside q); else `otherwise`.
+/// above that says that z is too large to mean anything beside q); else `otherwise`. 2^-10 of its
+/// floor is added to each residual first: what computing it in long double may have lost.
 [[nodiscard]] Status judge(const Certificate& certificate, double tolerance, Status otherwise);
 
 }  // namespace signorini::lcp

@@ -192,6 +192,14 @@ TEST(Certificate, OfConesIsTheSameForEveryFormOfM) {
   EXPECT_NEAR(factored.backward_error, dense.backward_error, 1e-15);
 }
 
+// D_c = 7e8 is the tangents'; w_N / D_c vanishes beside z_N, and must not vanish from the residual.
+TEST(Certificate, LosesNoNormalVelocityBesideALargeImpulse) {
+  Problem problem = lcp(Vector{{1e-5, 7e8, 1e4}}.asDiagonal().toDenseMatrix(), vector({-2, 0, 0}));
+  problem.cones = {{.normal_row = 0, .dimension = 3, .coefficient = 1e-10}};
+  const Certificate c = certify(problem, vector({2e5 - 4e-3, 0, 0}));  // w_N = -4e-8
+  EXPECT_NEAR(c.unit_free_residual, 2e-8, 1e-12);
+}
+
 TEST(Certificate, OfAnIslandIsThatOfTheIslandAlone) {
   Matrix M = Matrix::Zero(3, 3);
   M.topLeftCorner(2, 2) = Matrix{{2, 1}, {1, 2}};
@@ -374,10 +382,21 @@ TEST(Judge, NeedsBothResiduals) {
 TEST(Judge, HasACeilingForTheFloor) {
   Certificate c;
   c.natural_residual = c.unit_free_residual = 1.1e-5;
-  c.natural_floor = c.rounding_floor = kInfinity;
+  c.natural_floor = c.rounding_floor = 1e-4;
   EXPECT_EQ(judge(c, kTolerance, Status::kStalled), Status::kStalled);
   c.natural_residual = c.unit_free_residual = 0.9e-5;
   EXPECT_EQ(judge(c, kTolerance, Status::kStalled), Status::kSolvedToRounding);
+}
+
+// A floor of 1e-4 is double's; computed in long double, the residual may be 1e-7 too small.
+TEST(Judge, TrustsNoResidualBeyondWhatItsOwnRoundingLeaves) {
+  Certificate c;
+  c.natural_residual = c.unit_free_residual = 0.0;
+  c.natural_floor = c.rounding_floor = 1e-4;
+  EXPECT_EQ(judge(c, kTolerance, Status::kStalled), Status::kSolvedToRounding);
+  EXPECT_EQ(judge(c, 2e-7, Status::kStalled), Status::kSolved);
+  c.natural_floor = c.rounding_floor = kInfinity;
+  EXPECT_EQ(judge(c, kTolerance, Status::kStalled), Status::kStalled);
 }
 
 }  // namespace
