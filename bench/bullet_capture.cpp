@@ -1,8 +1,9 @@
 #include "bench/bullet_capture.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 
@@ -171,7 +172,8 @@ void BulletState::restore(const BulletGroup& group) const {
 
 bool BulletState::operator==(const BulletState& other) const {
   const auto same_vector = [](const btVector3& a, const btVector3& b) {
-    return std::memcmp(a.m_floats, b.m_floats, sizeof a.m_floats) == 0;
+    const auto bits = [](btScalar value) { return std::bit_cast<std::uint64_t>(value); };
+    return std::ranges::equal(a.m_floats, b.m_floats, {}, bits, bits);
   };
   const auto same_body = [&](const BodyPart& a, const BodyPart& b) {
     bool same = same_vector(a.pose.getOrigin(), b.pose.getOrigin()) &&

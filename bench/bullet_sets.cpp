@@ -92,7 +92,7 @@ struct Solver {
 };
 
 Solver bullet_solver(const std::string& name, int iterations,
-                     std::function<std::shared_ptr<btConstraintSolver>()> make,
+                     const std::function<std::shared_ptr<btConstraintSolver>()>& make,
                      int more_modes = 0) {
   return {name,
           [iterations, make, more_modes](const BulletGroup& group) -> std::function<void(Report&)> {
@@ -273,9 +273,11 @@ BulletScene::BulletScene(const std::string& name, double friction)
     std::mt19937_64 random(1);
     std::uniform_real_distribution<double> jitter(-0.02, 0.02);
     for (int i = 0; i < 125; ++i) {
+      const int row = i / 5 % 5;
+      const int layer = i / 25;
       const double x = i % 5 + jitter(random);
-      const double y = (i / 5) % 5 + jitter(random);
-      add_body(parts.sphere, 1.0, btVector3(x, y, 0.6 + 1.0 * (i / 25) + 0.3 * jitter(random)));
+      const double y = row + jitter(random);
+      add_body(parts.sphere, 1.0, btVector3(x, y, 0.6 + layer + 0.3 * jitter(random)));
     }
     parts.steps = 20;
   } else {

@@ -229,6 +229,7 @@ mpf_class exact_cone_step(const Problem& problem, const FrictionCone& cone, cons
   }
   tangential = sqrt(tangential);
   std::vector<mpf_class> x;
+  x.reserve(d);
   for (int k = 0; k < d; ++k) {
     x.emplace_back(mpq_class(z[cone.normal_row + k]) - w[cone.normal_row + k] / s, kBits);
   }

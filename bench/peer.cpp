@@ -83,7 +83,7 @@ std::string refuses_all_but_boxes(const lcp::Problem& problem) {
 }
 
 std::string refuses_all_but_symmetric_boxes(const lcp::Problem& problem) {
-  const std::string reason = refuses_all_but_boxes(problem);
+  std::string reason = refuses_all_but_boxes(problem);
   if (!reason.empty()) {
     return reason;
   }

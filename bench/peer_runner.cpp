@@ -137,7 +137,7 @@ TimedAnswer solve_with_enough_sweeps(Peer& peer, const lcp::Problem& judged, dou
   once.repeat_seconds = 0.0;
   for (int sweeps = kFewestSweeps;; sweeps *= 2) {
     peer.set_sweeps(sweeps);
-    const TimedAnswer timed = solve_repeatedly(peer, once);
+    TimedAnswer timed = solve_repeatedly(peer, once);
     const bool is_good =
         is_answer(timed.answer.z, judged) && meets(lcp::certify(judged, timed.answer.z), tolerance);
     if (is_good) {
@@ -217,7 +217,7 @@ PeerRun run_peer(const PeerEntry& entry, const lcp::Problem& given, const lcp::P
     run.said = child.reason;
     return run;
   }
-  const TimedAnswer timed = from_bytes(child.answer);
+  TimedAnswer timed = from_bytes(child.answer);
   run.claim = timed.answer.claim;
   run.said = timed.answer.said;
   run.seconds = timed.seconds;

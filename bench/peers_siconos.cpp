@@ -178,7 +178,7 @@ class SiconosFrictionPeer : public Peer {
 
 /// Contact after contact, every row in a Coulomb cone of this dimension.
 std::string refuses_all_but_cones(const lcp::Problem& problem, int dimension) {
-  const std::string reason = "takes Coulomb cones of " + std::to_string(dimension) + " rows alone";
+  std::string reason = "takes Coulomb cones of " + std::to_string(dimension) + " rows alone";
   if (problem.cones.empty() || problem.friction_law != lcp::FrictionLaw::kCoulomb ||
       problem.size() != static_cast<lcp::Index>(dimension * problem.cones.size())) {
     return reason;

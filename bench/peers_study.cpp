@@ -40,7 +40,8 @@ std::vector<Contestant> contestants(const std::vector<PeerEntry>& entries,
       for (const Contestant& one : all) {
         known.append(" ").append(one.name());
       }
-      throw std::invalid_argument("solver: none is called " + name + "; known:" + known);
+      throw std::invalid_argument(
+          std::string("solver: none is called ").append(name).append("; known:").append(known));
     }
     chosen.push_back(*found);
   }

@@ -213,6 +213,7 @@ std::string peers_text(const PeersResult& result) {
 }
 
 std::vector<std::string> peers_legend() {
+  // NOLINTBEGIN(bugprone-suspicious-missing-comma): lines that are long
   return {
       "time: the fastest of at least five solves in one process, after the library's own data were "
       "made from the problem (not timed); wall time, or CPU time where that is less; solves above "
@@ -228,6 +229,7 @@ std::vector<std::string> peers_legend() {
       "-: cannot take the problem",
       "floor: one sparse analyse, factor and solve of the active set, CPU time (CHOLMOD); best / "
       "floor: the fastest solver's time over it"};
+  // NOLINTEND(bugprone-suspicious-missing-comma)
 }
 
 std::string peers_markdown(const PeersResult& result, const std::vector<std::string>& remarks) {

@@ -30,7 +30,7 @@ void PrincipalFactor::analyse() {
   const Eigen::Map<const SparseMatrix> pattern(n_, n_, static_cast<Index>(seen_row_.size()),
                                                seen_start_.data(), seen_row_.data(), ones.data());
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
-  const SparseMatrix copy = pattern;
+  const SparseMatrix copy = pattern.transpose();  // symmetric; and its rows are sorted
   Eigen::AMDOrdering<int>()(copy.selfadjointView<Eigen::Lower>(), order);
   row_of_.assign(order.indices().data(), order.indices().data() + n_);
   place_of_.resize(n_);

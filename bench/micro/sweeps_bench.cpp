@@ -87,11 +87,15 @@ void add(const std::string& type) {
     for (const RowOrder order : {RowOrder::kNatural, RowOrder::kColoured}) {
       const std::string kind = (order == RowOrder::kNatural ? "/natural/" : "/coloured/") + type;
       for (const InstructionSet instructions : lcp::available_instruction_sets()) {
-        benchmark::RegisterBenchmark(
-            ("sweep" + name + kind + "/" + std::string(lcp::to_string(instructions))).c_str(),
-            [=](benchmark::State& state) { sweep<T>(state, scene, order, instructions); });
+        std::string label = "sweep" + name;
+        label.append(kind).append("/").append(lcp::to_string(instructions));
+        benchmark::RegisterBenchmark(label.c_str(), [=](benchmark::State& state) {
+          sweep<T>(state, scene, order, instructions);
+        });
       }
-      benchmark::RegisterBenchmark(("set" + name + kind).c_str(),
+      std::string label = "set" + name;
+      label += kind;
+      benchmark::RegisterBenchmark(label.c_str(),
                                    [=](benchmark::State& state) { set<T>(state, scene, order); });
     }
   }
