@@ -325,16 +325,26 @@ ExactResiduals exact_residuals(const Problem& problem, const Vector& z) {
       r.unit_free = std::max(r.unit_free, mpq_class(s * exact_step(rows, z, i, w[i], s)));
     }
   }
+  const mpq_class w_most = most;
+  mpq_class natural_most = 0;
   const Matrix M = problem.cones.empty() ? Matrix() : lcp::to_dense(problem.M);
   for (const FrictionCone& cone : problem.cones) {
     const mpq_class s = cone_scale(block_of(M, cone));
     r.natural = std::max(r.natural, mpq_class(exact_cone_step(problem, cone, z, w, 1)));
     r.unit_free =
         std::max(r.unit_free, mpq_class(s * mpq_class(exact_cone_step(problem, cone, z, w, s))));
+    // The floor of a cone (certificate.h): what rounding z does to max(|z_T|, mu |z_N|).
+    const double boundary =
+        std::max(lcp::tangential_norm(cone.dimension, z.data() + cone.normal_row),
+                 cone.coefficient * std::abs(z[cone.normal_row]));
+    const mpq_class rounded = boundary;
+    natural_most = std::max(natural_most, rounded);
+    most = std::max(most, mpq_class(s * rounded));
   }
+  natural_most = std::max(natural_most, w_most);
   const mpq_class q_inf = largest_q(problem);
   r.natural /= 1 + q_inf;
-  r.natural_floor = kEpsilon * most / (1 + q_inf);
+  r.natural_floor = kEpsilon * natural_most / (1 + q_inf);
   if (q_inf > 0) {
     r.unit_free /= q_inf;
     r.unit_free_floor = kEpsilon * most / q_inf;
