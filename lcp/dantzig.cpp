@@ -53,7 +53,7 @@ std::string Dantzig::refuses(const Problem& problem) const {
 
 Status Dantzig::iterate(const Problem& problem, const Vector* warm_start, const Deadline& deadline,
                         Result& result) {
-  pivots_ = refinements_ = dependent_moves_ = rounds_ = 0;
+  pivots_ = flips_ = refinements_ = dependent_moves_ = rounds_ = 0;
   ray_row_ = -1;
   result.z.setZero();
   if (!scaled_.assign(problem)) {
@@ -203,11 +203,12 @@ Dantzig::Ending Dantzig::solve_box(const Deadline& deadline) {
     if (row < 0) {
       return Ending::kSatisfied;
     }
-    for (; row >= 0; row = most_violated()) {
-      const Ending ending = drive(row, deadline);
-      if (ending != Ending::kNext) {
-        return ending;
-      }
+    Ending ending = Ending::kNext;
+    for (; row >= 0 && ending == Ending::kNext; row = most_violated()) {
+      ending = drive(row, deadline);
+    }
+    if (ending != Ending::kNext && ending != Ending::kRounding) {
+      return ending;
     }
   }
   return Ending::kStalled;
@@ -220,7 +221,7 @@ Dantzig::Ending Dantzig::drive(int row, const Deadline& deadline) {
   const double direction = w_[row] < 0.0 ? 1.0 : -1.0;
   const double last = direction > 0.0 ? scaled_.upper(row) : scaled_.lower(row);
   while (true) {
-    if (pivots_ >= limit) {
+    if (pivots_ + flips_ >= limit) {
       return Ending::kLimit;
     }
     if (deadline.passed()) {
@@ -269,7 +270,9 @@ Dantzig::Ending Dantzig::drive(int row, const Deadline& deadline) {
     }
     if (event.row == row && event.step == to_bound && event.step != own) {
       z_[row] = last;
-      return Ending::kNext;
+      ++flips_;
+      // M v = 0 leaves w_row as it was: where it asks for the way back, it was rounding.
+      return dependent && violation(row) > slack_w_[row] ? Ending::kRounding : Ending::kNext;
     }
     if (event.row == row || !basis_->contains(event.row)) {
       if (!exchange(event.row)) {

@@ -51,8 +51,13 @@ struct DantzigSettings : SolverSettings {
 ///
 /// A warm start gives the first C (the z strictly within their bounds) and the sides of the rest.
 ///
-/// Endings besides solved: kRayUnproven with a ray, kIterationLimit (pivots), kTimeLimit, kStalled,
-/// kNumericalBreakdown (M not positive semidefinite, for example).
+/// It ends: every step is an exchange or a move from bound to bound, both count towards
+/// max_iterations (default 1000 + 50 n); and a dependent row that went to its bound and is told to
+/// go back, which only the rounding of a large z can say, has w computed anew, at most 50 times.
+///
+/// Endings besides solved: kRayUnproven with a ray, kIterationLimit, kTimeLimit, kStalled (w that
+/// rounding decides, limits that do not repeat), kNumericalBreakdown (M not positive semidefinite,
+/// for example).
 ///
 /// Cost: between n/2 and 2 n exchanges for contact problems, exponential at worst. Each n^2/2
 /// multiply-adds (n <= SymmetricLcp::kDenseRows or full M: PrincipalTableau) or two passes over a
@@ -71,8 +76,9 @@ class Dantzig : public Solver {
                  Result& result) override;
 
  private:
-  /// kSatisfied: no row is violated. kNext: this row is done, there may be others.
-  enum class Ending { kSatisfied, kNext, kRay, kLimit, kTime, kStalled, kBreakdown };
+  /// kSatisfied: no row is violated. kNext: this row is done, there may be others. kRounding: w
+  /// must be computed anew first.
+  enum class Ending { kSatisfied, kNext, kRounding, kRay, kLimit, kTime, kStalled, kBreakdown };
   /// What ends a step along a driving direction.
   struct Event {
     int row;
@@ -121,6 +127,7 @@ class Dantzig : public Solver {
   double largest_z_ = 0.0;
 
   int pivots_ = 0;
+  int flips_ = 0;  // moves of a row from bound to bound
   int refinements_ = 0;
   int dependent_moves_ = 0;
   int rounds_ = 0;

@@ -245,6 +245,28 @@ TEST_P(NeverALie, FastSample) {
   EXPECT_GT(counts.rows.at(0).judged, 0);
 }
 
+/// What fuzzing found, in the order of finding.
+struct Found {
+  const char* solver;
+  std::int64_t index;  // of seed 1
+  const char* what;
+};
+
+TEST(FuzzStudy, WhatWasFoundStaysMended) {
+  constexpr Found kFound[] = {
+      {"dantzig", 78973, "a dependent row moved between far bounds without end"},
+      {"dantzig", 84379, "the same"},
+      {"dantzig", 99608, "the same, n = 4"},
+  };
+  for (const Found& found : kFound) {
+    std::ostringstream out;
+    const FuzzCounts counts =
+        run_fuzz_study({.first = found.index, .problems = 1, .solver = found.solver}, out);
+    EXPECT_EQ(counts.wrong(), 0) << found.what << "\n" << out.str();
+    EXPECT_EQ(counts.rows.at(0).judged, 1);
+  }
+}
+
 std::vector<std::string> names() {
   return {lcp::solver_names().begin(), lcp::solver_names().end()};
 }

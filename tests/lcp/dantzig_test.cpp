@@ -270,6 +270,27 @@ TEST(Dantzig, EndsAtItsLimits) {
   EXPECT_EQ(solve(problem, settings).status, Status::kTimeLimit);
 }
 
+TEST(Dantzig, EndsWhereOnlyRoundingDrivesADependentRowBetweenFarBounds) {
+  // Row 0 depends on the free row 1 and goes 1e61 along the null direction; w_0 is then rounding of
+  // 1e45, which may send it to its other bound, and back.
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  int stalled = 0;
+  for (int trial = 0; trial < 100; ++trial) {
+    const Vector u = Vector::NullaryExpr(2, [&] { return normal(random); });
+    const Vector q = Vector::NullaryExpr(2, [&] { return normal(random); });
+    const Problem problem =
+        box(u * u.transpose(), q, Vector{{-2.9e62, -kInfinity}}, Vector{{1.6e61, kInfinity}});
+    const Result result = solve(problem, {{.max_iterations = 300}});
+    EXPECT_TRUE(result.status == Status::kStalled || result.status == Status::kIterationLimit ||
+                is_solved(result.status))
+        << trial << ": " << to_string(result.status) << ", " << result.detail;
+    EXPECT_TRUE(!is_solved(result.status) || result.certificate.unit_free_residual <= 1e-5);
+    stalled += result.status == Status::kStalled ? 1 : 0;
+  }
+  EXPECT_GT(stalled, 0);
+}
+
 TEST(Dantzig, AnIndefiniteMatrixIsNotCalledSolvedUnlessItIs) {
   const Result small = solve(lcp(Matrix{{1, 2}, {2, 1}}, Vector{{-1.0, -1.0}}));
   EXPECT_TRUE(small.status != Status::kSolved || small.certificate.unit_free_residual <= 1e-8);
