@@ -9,6 +9,9 @@
 #include "bench/scaling_study.h"
 #include "bench/sequence_command.h"
 
+#ifdef SIGNORINI_HAS_COLLISION
+#include "bench/collision_command.h"
+#endif
 #ifdef SIGNORINI_HAS_GMP
 #include "bench/exactness_study.h"
 #endif
@@ -142,6 +145,9 @@ int run(int argc, char** argv) {
   const BulletSetsCommand bullet_sets(app);
   const SequenceCommand sequence(app);
   const FuzzCommand fuzz(app);
+#ifdef SIGNORINI_HAS_COLLISION
+  const CollisionCommand collision(app);
+#endif
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -155,6 +161,11 @@ int run(int argc, char** argv) {
     pin_libraries_to_one_thread(argv);
     return run_scaling(scaling);
   }
+#ifdef SIGNORINI_HAS_COLLISION
+  if (collision.is_asked()) {
+    return collision.run();
+  }
+#endif
   if (sequence.is_asked()) {
     return sequence.run();
   }

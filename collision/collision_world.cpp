@@ -2,7 +2,6 @@
 #include <signorini/collision/contact_time.h>
 #include <signorini/collision/feature_id.h>
 #include <signorini/collision/pair_query.h>
-#include <signorini/collision/sweep.h>
 #include <signorini/core/model/number_text.h>
 
 #include <cmath>
@@ -64,8 +63,12 @@ std::vector<bool> dynamic_bodies(const Bodies& bodies) {
 }  // namespace
 
 CollisionWorld::CollisionWorld(const Bodies& bodies, std::vector<Collider> colliders,
-                               PairingRule rule)
-    : colliders_(std::move(colliders)), is_dynamic_(dynamic_bodies(bodies)), rule_(rule) {
+                               PairingRule rule, IgnoredPairs ignored)
+    : colliders_(std::move(colliders)),
+      is_dynamic_(dynamic_bodies(bodies)),
+      rule_(rule),
+      ignored_(std::move(ignored)) {
+  ignored_.validate(static_cast<int>(bodies.size()));
   for (Collider& collider : colliders_) {
     validate(collider, static_cast<int>(bodies.size()));
     if (std::holds_alternative<HalfSpace>(collider.shape) && is_dynamic_[collider.body]) {
@@ -74,13 +77,15 @@ CollisionWorld::CollisionWorld(const Bodies& bodies, std::vector<Collider> colli
                                   std::to_string(collider.body) + " is dynamic");
     }
     collider.local.orientation.normalize();
+    is_immovable_.push_back(is_dynamic_[collider.body] ? 0 : 1);
   }
 }
 
 bool CollisionWorld::may_touch(int collider_a, int collider_b) const {
-  const int body_a = colliders_[collider_a].body;
-  const int body_b = colliders_[collider_b].body;
-  return body_a != body_b && (is_dynamic_[body_a] || is_dynamic_[body_b]);
+  const Collider& a = colliders_[collider_a];
+  const Collider& b = colliders_[collider_b];
+  return a.body != b.body && (is_dynamic_[a.body] || is_dynamic_[b.body]) &&
+         may_collide(a.filter, b.filter) && !ignored_.contains(a.body, b.body);
 }
 
 void CollisionWorld::find(const State& state, double margin, ContactSet& contacts) {
@@ -93,22 +98,23 @@ void CollisionWorld::find(const State& state, double margin, ContactSet& contact
     }
   }
 
-  std::vector<Pose> poses;
-  std::vector<Bounds> bounds;
+  poses_.clear();
+  bounds_.clear();
   for (const Collider& collider : colliders_) {
     const Pose pose = state[collider.body].pose() * collider.local;
     const Vec3 half = std::visit(HalfExtents{pose.orientation}, collider.shape);
-    poses.push_back(pose);
-    bounds.push_back(around(pose.position, half + Vec3::Constant(0.5 * margin)));
+    poses_.push_back(pose);
+    bounds_.push_back(around(pose.position, half + Vec3::Constant(0.5 * margin)));
   }
-  overlapping_pairs(bounds, pairs_);
+  broad_phase_.find(bounds_, is_immovable_, pairs_);
 
   contacts.clear();
   for (const auto& [a, b] : pairs_) {
     if (!may_touch(a, b)) {
       continue;
     }
-    find_intersection(colliders_[a].shape, poses[a], colliders_[b].shape, poses[b], margin, found_);
+    find_intersection(colliders_[a].shape, poses_[a], colliders_[b].shape, poses_[b], margin,
+                      found_);
     for (Contact& contact : found_) {
       contact.body_a = colliders_[a].body;
       contact.body_b = colliders_[b].body;
@@ -127,11 +133,11 @@ std::optional<FirstContact> CollisionWorld::first_contact(std::span<const Motion
       throw std::invalid_argument("motions: " + std::to_string(i) + ": must not be null");
     }
   }
-  std::vector<Bounds> bounds;
+  bounds_.clear();
   for (const Collider& collider : colliders_) {
-    bounds.push_back(swept_bounds(collider, *motions[collider.body], duration));
+    bounds_.push_back(swept_bounds(collider, *motions[collider.body], duration));
   }
-  overlapping_pairs(bounds, pairs_);
+  broad_phase_.find(bounds_, is_immovable_, pairs_);
 
   std::optional<FirstContact> first;
   for (const auto& [a, b] : pairs_) {

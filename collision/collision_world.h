@@ -1,5 +1,7 @@
 #pragma once
 
+#include <signorini/collision/broad_phase.h>
+#include <signorini/collision/pair_filter.h>
 #include <signorini/collision/shape.h>
 #include <signorini/core/model/contact_finder.h>
 
@@ -8,18 +10,23 @@
 
 namespace signorini::collision {
 
-/// The colliders of a scene: makes contact sets and contact times for a stepper. Pairs of which no
-/// body is dynamic, and pairs of one body, are skipped. In each contact A is the body of the
+/// The colliders of a scene: makes contact sets and contact times for a stepper. Skipped are pairs
+/// of which no body is dynamic (fixed and kinematic bodies do not push each other), pairs of one
+/// body, and what the filters leave out (pair_filter.h). In each contact A is the body of the
 /// collider that comes first. Contacts come in the order of the collider pairs, whatever their
-/// poses. A feature_id depends on the two colliders' numbers and the features alone.
+/// poses and whatever was found before. A feature_id depends on the two colliders' numbers and the
+/// features alone.
 ///
-/// Cost: one pass over the colliders sorted along an axis finds the pairs whose bounds overlap;
-/// each costs one pair query. Colliders without bounds (half-spaces) meet every other one.
+/// Cost: the broad phase finds the pairs whose bounds overlap (broad_phase.h); each costs one pair
+/// query. Colliders without bounds (half-spaces) meet every other one. find() allocates nothing of
+/// its own once no count exceeds an earlier one.
 class CollisionWorld final : public ContactFinder {
  public:
   /// @throws std::invalid_argument naming the collider and the field: see validate(Collider), and a
   /// half-space must not belong to a dynamic body.
-  CollisionWorld(const Bodies& bodies, std::vector<Collider> colliders, PairingRule rule);
+  /// Ignored pairs: see IgnoredPairs.
+  CollisionWorld(const Bodies& bodies, std::vector<Collider> colliders, PairingRule rule,
+                 IgnoredPairs ignored = {});
 
   /// @throws std::invalid_argument naming the body and the field: state as long as the bodies,
   /// poses finite, unit quaternions to 1e-6, margin >= 0 and finite.
@@ -38,8 +45,14 @@ class CollisionWorld final : public ContactFinder {
   std::vector<Collider> colliders_;
   std::vector<bool> is_dynamic_;  ///< by body
   PairingRule rule_;
-  std::vector<std::pair<int, int>> pairs_;  ///< workspace
-  std::vector<Contact> found_;              ///< workspace
+  IgnoredPairs ignored_;
+  std::vector<std::uint8_t> is_immovable_;  ///< by collider
+
+  BroadPhase broad_phase_;  // from here on workspace
+  std::vector<Pose> poses_;
+  std::vector<Bounds> bounds_;
+  std::vector<std::pair<int, int>> pairs_;
+  std::vector<Contact> found_;
 };
 
 }  // namespace signorini::collision

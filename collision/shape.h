@@ -1,5 +1,6 @@
 #pragma once
 
+#include <signorini/collision/pair_filter.h>
 #include <signorini/core/model/body.h>
 #include <signorini/core/model/material.h>
 #include <signorini/core/model/types.h>
@@ -31,6 +32,7 @@ struct Collider {
   Pose local;  ///< shape frame in the body frame (whose origin is the centre of mass)
   Material material;
   std::string name;  ///< for reports
+  CollisionFilter filter = {};
 };
 
 /// @throws std::invalid_argument naming the shape, the field, its value and the bound.

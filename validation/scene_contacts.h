@@ -11,14 +11,11 @@ class SceneContacts final : public ContactFinder {
   explicit SceneContacts(const Scene& scene);
 
   void find(const State& state, double margin, ContactSet& contacts) override;
-  /// @throws std::logic_error if the scene has pairs that never collide: their contact times would
-  /// have to be left out, and no stepper used here asks for contact times.
   [[nodiscard]] std::optional<FirstContact> first_contact(std::span<const Motion* const> motions,
                                                           double duration) override;
 
  private:
   collision::CollisionWorld world_;
-  std::vector<std::pair<int, int>> never_collide_;
 };
 
 /// Overlap of a state, measured the same way for every engine.

@@ -1,8 +1,8 @@
 #include <signorini/collision/collision_world.h>
 #include <signorini/collision/pair_query.h>
-#include <signorini/collision/sweep.h>
 
 #include "random_pairs.h"
+#include "tests/lcp/allocation_count.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -34,6 +34,16 @@ BodyState at(const Vec3& x) {
   BodyState state;
   state.x = x;
   return state;
+}
+
+template <class Call>
+std::string refusal(Call&& call) {
+  try {
+    call();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "nothing thrown";
 }
 
 const Box kCube{Vec3::Constant(0.5)};
@@ -139,6 +149,54 @@ TEST(CollisionWorld, SkipsPairsOfOneBodyAndPairsThatNothingMoves) {
   EXPECT_TRUE(contacts.empty());
 }
 
+TEST(CollisionWorld, FiltersLeaveOutTheirPairs) {
+  // Four balls in one place: bodies 0 to 3.
+  const Bodies bodies(4, body_of(BodyKind::kDynamic));
+  const State state(4, at(Vec3::Zero()));
+  std::vector<Collider> colliders;
+  for (int body = 0; body < 4; ++body) {
+    colliders.push_back(collider(body, Sphere{0.5}));
+  }
+  const auto pairs_found = [&](IgnoredPairs ignored) {
+    CollisionWorld world(bodies, colliders, PairingRule::kMultiply, std::move(ignored));
+    ContactSet contacts;
+    world.find(state, 0.0, contacts);
+    std::vector<std::pair<int, int>> found;
+    for (const Contact& contact : contacts) {
+      found.emplace_back(contact.body_a, contact.body_b);
+    }
+    return found;
+  };
+  using Pairs = std::vector<std::pair<int, int>>;
+  EXPECT_EQ(pairs_found({}), (Pairs{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}));
+  EXPECT_EQ(pairs_found(IgnoredPairs({{2, 0}, {3, 1}, {0, 2}})),
+            (Pairs{{0, 1}, {0, 3}, {1, 2}, {2, 3}}));
+  // One way is not enough: 3 is in nobody's mask but its own category's.
+  colliders[3].filter = {.category = 2, .mask = 0xffffffffU};
+  colliders[0].filter.mask = 1;
+  colliders[1].filter.mask = 1;
+  EXPECT_EQ(pairs_found({}), (Pairs{{0, 1}, {0, 2}, {1, 2}, {2, 3}}));
+  colliders[2].filter.mask = 0;
+  EXPECT_EQ(pairs_found({}), (Pairs{{0, 1}}));
+  EXPECT_EQ(refusal([&] {
+              CollisionWorld(bodies, colliders, PairingRule::kMultiply, IgnoredPairs({{1, 4}}));
+            }),
+            "ignored pair of bodies: must be in [0, 4), got 1 and 4");
+}
+
+TEST(CollisionWorld, AWarmStepAllocatesNothing) {
+  const Heap heap(200);
+  CollisionWorld world(heap.bodies, heap.colliders, PairingRule::kMultiply);
+  ContactSet contacts;
+  world.find(heap.state, 0.01, contacts);
+  const std::size_t first = contacts.size();
+  const lcp::AllocationCount allocations;
+  world.find(heap.state, 0.01, contacts);
+  EXPECT_EQ(allocations.count(), 0);
+  EXPECT_EQ(contacts.size(), first);
+  EXPECT_GT(first, 50U);
+}
+
 TEST(CollisionWorld, CollidersSitWhereTheirLocalPosesPutThem) {
   const Bodies bodies{body_of(BodyKind::kFixed), body_of(BodyKind::kDynamic)};
   CollisionWorld world(
@@ -186,16 +244,6 @@ TEST(CollisionWorld, FirstContactTurnsOffCentreCollidersAboutTheBody) {
   EXPECT_NEAR(3.0 * first->time, M_PI / 6, 1e-13);  // 0.6 - sin(phi) = 0.1
 }
 
-template <class Call>
-std::string refusal(Call&& call) {
-  try {
-    call();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "nothing thrown";
-}
-
 TEST(CollisionWorld, NamesWhatIsWrong) {
   const Bodies bodies{body_of(BodyKind::kFixed), body_of(BodyKind::kDynamic)};
   const auto make = [&](const Collider& bad) {
@@ -228,33 +276,6 @@ TEST(CollisionWorld, NamesWhatIsWrong) {
             "motions: 1: must not be null");
   EXPECT_EQ(refusal([&] { (void)world.first_contact(motions, kNaN); }),
             "duration: must be finite and >= 0, got nan");
-}
-
-TEST(Sweep, FindsTheOverlapsOfAllPairsInOrder) {
-  Random random(5);
-  for (int k = 0; k < 50; ++k) {
-    std::vector<Bounds> bounds;
-    for (int i = 0; i < 60; ++i) {
-      const Vec3 centre(testing::uniform(random, -3.0, 3.0), testing::uniform(random, -1.0, 1.0),
-                        testing::uniform(random, -2.0, 2.0));
-      const Vec3 half = Vec3::Constant(i == 17 ? kInfinity : testing::uniform(random, 0.0, 0.5));
-      bounds.push_back({centre - half, centre + half});
-    }
-    std::vector<std::pair<int, int>> expected;
-    for (int i = 0; i < 60; ++i) {
-      for (int j = i + 1; j < 60; ++j) {
-        if (bounds[i].overlaps(bounds[j])) {
-          expected.emplace_back(i, j);
-        }
-      }
-    }
-    std::vector<std::pair<int, int>> found{{7, 7}};
-    overlapping_pairs(bounds, found);
-    EXPECT_EQ(found, expected);
-  }
-  std::vector<std::pair<int, int>> none{{1, 2}};
-  overlapping_pairs({}, none);
-  EXPECT_TRUE(none.empty());
 }
 
 }  // namespace

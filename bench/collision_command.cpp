@@ -1,0 +1,65 @@
+#include "bench/collision_command.h"
+
+#include <signorini/lcp/io/whole_file.h>
+
+#include "bench/broad_phase_study.h"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fmt/format.h>
+#include <iostream>
+#include <string>
+
+namespace signorini::bench {
+namespace {
+
+constexpr int kClaimsHold = 0;
+constexpr int kWrongClaim = 1;
+
+void write_csv(const std::string& folder, const std::string& name, const std::string& csv) {
+  if (folder.empty()) {
+    return;
+  }
+  const std::filesystem::path file = std::filesystem::path(folder) / (name + ".csv");
+  lcp::write_whole_file(file, csv);
+  fmt::print("written: {}\n", file.string());
+}
+
+}  // namespace
+
+struct CollisionCommand::Options {
+  BroadPhaseOptions broad_phase;
+  std::string out;
+};
+
+CollisionCommand::CollisionCommand(CLI::App& app) : options_(std::make_unique<Options>()) {
+  Options& o = *options_;
+  broad_phase_ = app.add_subcommand(
+      "broad-phase", "Moving boxes: our broad phase beside Bullet's, FCL's and Boost's");
+  broad_phase_->add_option("--bodies", o.broad_phase.bodies, "How many boxes")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  broad_phase_->add_option("--steps", o.broad_phase.steps, "Of each motion")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  for (CLI::App* study : {broad_phase_}) {
+    study->add_option("--out", o.out, "Folder for the CSV, made if absent (default: print only)");
+  }
+}
+
+CollisionCommand::~CollisionCommand() = default;
+
+bool CollisionCommand::is_asked() const {
+  return broad_phase_->parsed();
+}
+
+int CollisionCommand::run() const {
+  if (!options_->out.empty()) {
+    std::filesystem::create_directories(options_->out);
+  }
+  const BroadPhaseReport report = run_broad_phase_study(options_->broad_phase, std::cout);
+  write_csv(options_->out, "broad-phase", report.to_csv());
+  return report.passed() ? kClaimsHold : kWrongClaim;
+}
+
+}  // namespace signorini::bench

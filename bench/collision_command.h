@@ -1,0 +1,24 @@
+#pragma once
+
+#include <CLI/App.hpp>
+#include <memory>
+
+namespace signorini::bench {
+
+/// The studies of collision detection: `signorini-bench broad-phase`.
+class CollisionCommand {
+ public:
+  explicit CollisionCommand(CLI::App& app);
+  ~CollisionCommand();
+  [[nodiscard]] bool is_asked() const;
+  /// @return the exit code: 0, or 1 if an answer of ours was wrong.
+  /// @throws std::exception for what cannot be run or written.
+  [[nodiscard]] int run() const;
+
+ private:
+  struct Options;
+  std::unique_ptr<Options> options_;
+  CLI::App* broad_phase_;
+};
+
+}  // namespace signorini::bench
