@@ -69,8 +69,8 @@ void check_dynamic(const Bodies& bodies, const ContactSet& contacts) {
   }
 }
 
-void assemble_normals(const Bodies& bodies, const State& state, const ContactSet& contacts,
-                      NormalRows& rows) {
+void start_rows(const Bodies& bodies, const State& state, const ContactSet& contacts,
+                NormalRows& rows) {
   check_dynamic(bodies, contacts);
   rows.A.clear();
   rows.block_of_body = bodies_with_rows(bodies, contacts);
@@ -79,17 +79,27 @@ void assemble_normals(const Bodies& bodies, const State& state, const ContactSet
       rows.block_of_body[k] = rows.A.mass.add_inverse(inverse_mass_block(bodies[k], state[k]));
     }
   }
-  const auto add_body = [&](int body, const Vec3& direction, const Vec3& point) {
+}
+
+void add_row(const State& state, const Contact& contact, const Vec3& direction, const Vec3& point_a,
+             const Vec3& point_b, NormalRows& rows) {
+  const auto add_body = [&](int body, const Vec3& along, const Vec3& point) {
     if (rows.block_of_body[body] >= 0) {
       Vec6 values;
-      values << direction, (point - state[body].x).cross(direction);
+      values << along, (point - state[body].x).cross(along);
       rows.A.add_entry(rows.block_of_body[body], values);
     }
   };
+  rows.A.add_row();
+  add_body(contact.body_a, direction, point_a);
+  add_body(contact.body_b, -direction, point_b);
+}
+
+void assemble_normals(const Bodies& bodies, const State& state, const ContactSet& contacts,
+                      NormalRows& rows) {
+  start_rows(bodies, state, contacts, rows);
   for (const Contact& contact : contacts) {
-    rows.A.add_row();
-    add_body(contact.body_a, contact.normal, contact.point_a);
-    add_body(contact.body_b, -contact.normal, contact.point_b);
+    add_row(state, contact, contact.normal, contact.point_a, contact.point_b, rows);
   }
   rows.d_dot = gap_velocities(bodies, state, contacts);
 }

@@ -26,6 +26,15 @@ struct NormalRows {
 /// @throws std::invalid_argument naming the contact if neither of its bodies is dynamic.
 void check_dynamic(const Bodies& bodies, const ContactSet& contacts);
 
+/// Forgets what rows held and adds a block of 6 for every dynamic body of the contacts; no rows.
+/// @throws std::invalid_argument as check_dynamic(); rows is then untouched.
+void start_rows(const Bodies& bodies, const State& state, const ContactSet& contacts,
+                NormalRows& rows);
+/// Adds the row [t, r_A x t, -t, -(r_B x t)] of one contact, r_A = point_a - x_A, to A.
+/// @param direction t, unit. d_dot is left alone
+void add_row(const State& state, const Contact& contact, const Vec3& direction, const Vec3& point_a,
+             const Vec3& point_b, NormalRows& rows);
+
 /// Assembles the rows of all contacts. Cost: O(bodies + contacts).
 /// @param bodies, state, contacts valid: see validate() of each
 /// @throws std::invalid_argument if a contact joins two bodies of which neither is dynamic; rows is

@@ -11,11 +11,11 @@ namespace {
 constexpr double kFloors = 4.0;  // as lcp::judge() allows
 
 /// f.A f = |J^T f|^2 in M^-1.
-double squared_in_inverse_mass(const NormalRows& rows, const lcp::Vector& f) {
-  lcp::Vector momentum(rows.A.degrees_of_freedom());
-  lcp::Vector velocity(rows.A.degrees_of_freedom());
-  rows.A.transpose_times(f.data(), momentum.data());
-  rows.A.apply_inverse_mass(momentum.data(), velocity.data());
+double squared_in_inverse_mass(const lcp::FactoredMatrix& A, const lcp::Vector& f) {
+  lcp::Vector momentum(A.degrees_of_freedom());
+  lcp::Vector velocity(A.degrees_of_freedom());
+  A.transpose_times(f.data(), momentum.data());
+  A.apply_inverse_mass(momentum.data(), velocity.data());
   return momentum.dot(velocity);
 }
 
@@ -42,25 +42,33 @@ bool is_admissible(const NormalRows& rows, const lcp::VectorRef& f, double toler
 
 EnergyLine energy_line(const NormalRows& rows, const lcp::VectorRef& f_c,
                        const lcp::VectorRef& f_e) {
-  const lcp::Vector plastic_after = gap_velocities_after(rows, f_c);
+  return energy_line(rows.A, rows.d_dot, f_c, f_e);
+}
+
+EnergyLine energy_line(const lcp::FactoredMatrix& A, const lcp::VectorRef& before,
+                       const lcp::VectorRef& f_c, const lcp::VectorRef& f_e) {
+  lcp::Vector plastic_after(before.size());
+  A.multiply(f_c.data(), plastic_after.data());
+  plastic_after += before;
   const lcp::Vector direction = f_e - f_c;
   EnergyLine line;
-  line.plastic = f_c.dot(plastic_after) - 0.5 * squared_in_inverse_mass(rows, f_c);
+  line.plastic = f_c.dot(plastic_after) - 0.5 * squared_in_inverse_mass(A, f_c);
   line.slope = direction.dot(plastic_after);
-  line.curvature = squared_in_inverse_mass(rows, direction);
+  line.curvature = squared_in_inverse_mass(A, direction);
   return line;
 }
 
 double largest_theta(const EnergyLine& line) {
   const double c = -line.plastic;
-  const double slope = std::max(line.slope, 0.0);  // negative by rounding alone
-  if (slope + 0.5 * line.curvature <= c) {
+  if (line.slope + 0.5 * line.curvature <= c) {
     return 1.0;  // E(1) <= 0
   }
   if (c <= 0.0) {
     return 0.0;
   }
-  const double root = 2.0 * c / (slope + std::sqrt(slope * slope + 2.0 * line.curvature * c));
+  const double size = std::sqrt(line.slope * line.slope + 2.0 * line.curvature * c);
+  const double root =
+      line.slope >= 0.0 ? 2.0 * c / (line.slope + size) : (size - line.slope) / line.curvature;
   return std::min(root, 1.0);
 }
 

@@ -17,7 +17,7 @@ namespace signorini {
 ///
 ///     E(theta) = plastic + slope theta + 1/2 curvature theta^2,
 ///     plastic   = -1/2 f_c.A f_c + f_c.d'_c   <= 0,    d'_c = A f_c + d'-  (f_c.d'_c = 0 but for
-///     slope     = (f_e - f_c).d'_c            >= 0,     rounding)
+///     slope     = (f_e - f_c).d'_c            >= 0 without friction,     rounding)
 ///     curvature = (f_e - f_c).A (f_e - f_c)   >= 0,
 ///
 /// each a sum without cancellation: the A products are |J^T f|^2 in M^-1. J.
@@ -29,10 +29,16 @@ struct EnergyLine {
 /// @param f_c solution of the plastic LCP. @param f_e admissible
 [[nodiscard]] EnergyLine energy_line(const NormalRows& rows, const lcp::VectorRef& f_c,
                                      const lcp::VectorRef& f_e);
+/// The same over any rows, tangents among them (friction): d'_c is then u_c = A f_c + before, and
+/// with the plastic Coulomb solution f_c.u_c <= 0.
+/// @param before velocities of the rows before the impact, m/s
+[[nodiscard]] EnergyLine energy_line(const lcp::FactoredMatrix& A, const lcp::VectorRef& before,
+                                     const lcp::VectorRef& f_c, const lcp::VectorRef& f_e);
 
 /// The largest theta in [0, 1] with E(theta) <= 0: min(1, the positive root), the root as
-/// 2c / (slope + sqrt(slope^2 + 2 curvature c)) with c = -plastic, in which nothing cancels. 0 if
-/// there is none (c <= 0 by rounding, and E(1) > 0).
+/// 2c / (slope + sqrt(slope^2 + 2 curvature c)) with c = -plastic, or, where slope < 0, as
+/// (-slope + sqrt(slope^2 + 2 curvature c)) / curvature, in which nothing cancels. 0 if there is
+/// none (c <= 0 by rounding, and E(1) > 0).
 [[nodiscard]] double largest_theta(const EnergyLine& line);
 
 }  // namespace signorini

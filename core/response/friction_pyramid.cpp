@@ -10,8 +10,6 @@
 namespace signorini {
 namespace {
 
-using Vec6 = Eigen::Matrix<double, 6, 1>;
-
 // cos and sin of 2 pi j/k; exact at multiples of 90 degrees, exactly opposite half a turn apart.
 std::vector<Eigen::Vector2d> pyramid_directions(int sides) {
   std::vector<Eigen::Vector2d> directions(sides);
@@ -21,27 +19,6 @@ std::vector<Eigen::Vector2d> pyramid_directions(int sides) {
     directions[j + sides / 2] = -directions[j];
   }
   return directions;
-}
-
-Vec3 slip_velocity(const Bodies& bodies, const State& state, const Contact& contact) {
-  const int a = contact.body_a;
-  const int b = contact.body_b;
-  const Vec3 point = friction_point(contact);
-  return velocity(bodies[a], state[a]).at(point - state[a].x) -
-         velocity(bodies[b], state[b]).at(point - state[b].x);
-}
-
-void add_tangent_row(const State& state, const Contact& contact, const Vec3& tangent,
-                     NormalRows& rows) {
-  const Vec3 point = friction_point(contact);
-  rows.A.add_row();
-  for (const auto& [body, sign] : {std::pair{contact.body_a, 1.0}, {contact.body_b, -1.0}}) {
-    if (rows.block_of_body[body] >= 0) {
-      Vec6 values;
-      values << sign * tangent, (point - state[body].x).cross(sign * tangent);
-      rows.A.add_entry(rows.block_of_body[body], values);
-    }
-  }
 }
 
 // Where a row of A over [normals; t1, t2 of each frictional contact] goes in z: itself for a
@@ -119,17 +96,6 @@ void check_arguments(const ContactSet& contacts, const lcp::VectorRef& allowance
 
 }  // namespace
 
-TangentFrame tangent_frame(const Vec3& normal, const Vec3& slip) {
-  const Vec3 tangential = slip - slip.dot(normal) * normal;
-  const double speed = tangential.norm();
-  const Vec3 t1 = speed >= kAligningSlip ? Vec3(tangential / speed) : normal.unitOrthogonal();
-  return {t1, normal.cross(t1)};
-}
-
-Vec3 friction_point(const Contact& contact) {
-  return 0.5 * (contact.point_a + contact.point_b);
-}
-
 void assemble_pyramid(const Bodies& bodies, const State& free_state, const ContactSet& contacts,
                       const lcp::VectorRef& allowance, int sides, PyramidProblem& out) {
   check_arguments(contacts, allowance, sides);
@@ -186,20 +152,6 @@ std::vector<Vec3> contact_impulses(const PyramidProblem& pyramid, const ContactS
     impulses[pyramid.frictional[c]] += friction[0] * frame.t1 + friction[1] * frame.t2;
   }
   return impulses;
-}
-
-void apply_contact_impulses(const Bodies& bodies, const ContactSet& contacts,
-                            const std::vector<Vec3>& impulses, State& state) {
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const Vec3 point = friction_point(contacts[i]);
-    for (const auto& [body, sign] :
-         {std::pair{contacts[i].body_a, 1.0}, {contacts[i].body_b, -1.0}}) {
-      if (bodies[body].is_dynamic()) {
-        state[body].p += sign * impulses[i];
-        state[body].L += (point - state[body].x).cross(sign * impulses[i]);
-      }
-    }
-  }
 }
 
 }  // namespace signorini

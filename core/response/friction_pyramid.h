@@ -2,27 +2,12 @@
 
 #include <signorini/core/model/body.h>
 #include <signorini/core/model/contact.h>
+#include <signorini/core/response/tangent_rows.h>
 #include <signorini/lcp/problem.h>
 
 #include <vector>
 
 namespace signorini {
-
-/// Two unit tangents of a contact: t1, t2, N are perpendicular to each other, t2 = N x t1.
-struct TangentFrame {
-  Vec3 t1 = Vec3::UnitX();
-  Vec3 t2 = Vec3::UnitY();
-};
-
-/// Slower slip than this does not align the frame, m/s.
-inline constexpr double kAligningSlip = 1e-9;
-
-/// The frame of a contact's friction pyramid. t1 points along the slip where the slip is at least
-/// kAligningSlip, so that a sliding point is braked by exactly mu f_n against its slip, and a point
-/// about to slip is held by all of mu f_n, whatever the number of sides; elsewhere t1 is fixed by N
-/// alone (Eigen's unitOrthogonal).
-/// @param normal N, unit. @param slip any vector; its tangential part counts, m/s
-[[nodiscard]] TangentFrame tangent_frame(const Vec3& normal, const Vec3& slip);
 
 /// The velocity-level contact LCP with friction as a k-sided pyramid (Stewart and Trinkle, An
 /// implicit time-stepping scheme for rigid body dynamics with inelastic collisions and Coulomb
@@ -64,13 +49,5 @@ void assemble_pyramid(const Bodies& bodies, const State& free_state, const Conta
 [[nodiscard]] std::vector<Vec3> contact_impulses(const PyramidProblem& pyramid,
                                                  const ContactSet& contacts,
                                                  const lcp::VectorRef& z);
-
-/// The point at which friction acts on both bodies, so that it has no moment on the pair:
-/// (P_A + P_B)/2.
-[[nodiscard]] Vec3 friction_point(const Contact& contact);
-
-/// Gives every contact's impulse to its dynamic bodies, at friction_point().
-void apply_contact_impulses(const Bodies& bodies, const ContactSet& contacts,
-                            const std::vector<Vec3>& impulses, State& state);
 
 }  // namespace signorini

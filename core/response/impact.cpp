@@ -1,9 +1,11 @@
 #include <signorini/core/model/number_text.h>
 #include <signorini/core/response/assembly.h>
+#include <signorini/core/response/friction_impact.h>
 #include <signorini/core/response/impact.h>
 #include <signorini/core/response/impact_energy.h>
 #include <signorini/core/response/sequential_impulses.h>
 #include <signorini/core/response/set_impact.h>
+#include <signorini/core/response/tangent_rows.h>
 
 #include <algorithm>
 #include <cmath>
@@ -61,10 +63,14 @@ void resolve_simultaneously(const Bodies& bodies, const ContactSet& contacts,
     for (const int i : members[k]) {
       set.push_back(contacts[i]);
     }
-    SetOutcome outcome = resolve_set(bodies, set, settings, solver, before, after);
+    SetOutcome outcome =
+        settings.friction ? resolve_set_with_friction(bodies, set, settings, solver, before, after)
+                          : resolve_set(bodies, set, settings, solver, before, after);
     for (std::size_t j = 0; j < set.size(); ++j) {
       report.impulses[members[k][j]] = outcome.impulses[j];
+      report.contact_impulses[members[k][j]] = outcome.contact_impulses[j];
     }
+    report.passes = std::max(report.passes, outcome.reflections);
     report.theta[k] = outcome.theta;
     report.law_status_of_set.push_back(outcome.law.status);
     report.status = worse(report.status, outcome.status);
@@ -80,9 +86,30 @@ void resolve_sequentially(const Bodies& bodies, const ContactSet& contacts,
   SequentialOutcome outcome = sequential_impulses(bodies, contacts, settings, after);
   report.status = report.law_status = outcome.status;
   report.impulses = std::move(outcome.impulses);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    report.contact_impulses[i] = report.impulses[static_cast<lcp::Index>(i)] * contacts[i].normal;
+  }
   report.passes = outcome.passes;
   const auto sets = std::max_element(report.set_of_contact.begin(), report.set_of_contact.end());
   report.theta.setOnes(sets == report.set_of_contact.end() ? 0 : *sets + 1);
+}
+
+/// The driver's work and the gain by the impulses of a solved impact.
+void account(const Bodies& bodies, const ContactSet& contacts, const ImpactSettings& settings,
+             const State& before, const State& after, ImpactReport& report) {
+  if (!settings.friction) {
+    report.driver_work = driver_work(bodies, before, contacts, report.impulses);
+    const lcp::Vector d_dot_after = gap_velocities(bodies, after, contacts);
+    report.gain_from_impulses =
+        impulse_energy(report.impulses, report.d_dot_before, d_dot_after).gain;
+    return;
+  }
+  report.driver_work = driver_work(bodies, before, contacts, report.contact_impulses);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const Vec3 sum =
+        slip_velocity(bodies, before, contacts[i]) + slip_velocity(bodies, after, contacts[i]);
+    report.gain_from_impulses += 0.5 * report.contact_impulses[i].dot(sum);
+  }
 }
 
 bool is_sequential(ImpactLaw law) {
@@ -112,13 +139,19 @@ std::string_view to_string(ImpactLaw law) {
     case ImpactLaw::kSequentialRepeated: return "sequential, repeated";
     case ImpactLaw::kNewton: return "Newton";
     case ImpactLaw::kNotes: return "notes";
+    case ImpactLaw::kPoisson: return "Poisson";
+    case ImpactLaw::kReflections: return "reflections";
   }
   return "unknown law";
 }
 
 void ImpactSettings::validate(int contact_count) const {
-  if (law > ImpactLaw::kNotes) {
-    refuse("law: not one of the four laws, got " + std::to_string(static_cast<int>(law)));
+  if (law > ImpactLaw::kReflections) {
+    refuse("law: not one of the six laws, got " + std::to_string(static_cast<int>(law)));
+  }
+  if (friction && law != ImpactLaw::kNewton && law != ImpactLaw::kReflections) {
+    refuse("friction: must be off but for the laws Newton and reflections, got it with " +
+           std::string(to_string(law)));
   }
   if (!(colliding_threshold >= 0.0) || !std::isfinite(colliding_threshold)) {
     refuse("colliding_threshold: must be finite and >= 0 m/s, got " +
@@ -146,11 +179,13 @@ void resolve_impact(const Bodies& bodies, const ContactSet& contacts,
   validate(contacts, static_cast<int>(bodies.size()));
   settings.validate(static_cast<int>(contacts.size()));
   check_dynamic(bodies, contacts);
-  const std::unique_ptr<lcp::Solver> solver = lcp::make_solver(settings.solver, settings.lcp);
+  const std::unique_ptr<lcp::Solver> solver = lcp::make_solver(
+      settings.friction ? settings.friction_solver : settings.solver, settings.lcp);
 
   ImpactReport fresh;
   fresh.set_of_contact = connected_sets(bodies, contacts);
   fresh.impulses.setZero(contacts.size());
+  fresh.contact_impulses.assign(contacts.size(), Vec3::Zero());
   fresh.d_dot_before = gap_velocities(bodies, state, contacts);
   fresh.energy_before = kinetic_energy(bodies, state);
   State after = state;
@@ -160,15 +195,11 @@ void resolve_impact(const Bodies& bodies, const ContactSet& contacts,
     resolve_simultaneously(bodies, contacts, settings, *solver, state, after, fresh);
   }
   if (lcp::is_solved(fresh.status)) {
-    fresh.driver_work = driver_work(bodies, state, contacts, fresh.impulses);
+    account(bodies, contacts, settings, state, after, fresh);
     state = std::move(after);
   }
   fresh.d_dot_after = gap_velocities(bodies, state, contacts);
   fresh.energy_after = kinetic_energy(bodies, state);
-  fresh.gain_from_impulses =
-      lcp::is_solved(fresh.status)
-          ? impulse_energy(fresh.impulses, fresh.d_dot_before, fresh.d_dot_after).gain
-          : 0.0;
   report = std::move(fresh);
 }
 

@@ -1,4 +1,5 @@
 #include <signorini/core/response/impact_energy.h>
+#include <signorini/core/response/tangent_rows.h>
 
 #include <cmath>
 #include <limits>
@@ -26,6 +27,24 @@ double driver_work(const Bodies& bodies, const State& state, const ContactSet& c
     };
     work += work_of(contact.body_b, contact.point_b, 1.0);
     work += work_of(contact.body_a, contact.point_a, -1.0);
+  }
+  return work;
+}
+
+double driver_work(const Bodies& bodies, const State& state, const ContactSet& contacts,
+                   const std::vector<Vec3>& impulses) {
+  double work = 0.0;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const Vec3 point = friction_point(contacts[i]);
+    const auto work_of = [&](int body, double sign) {
+      if (bodies[body].kind != BodyKind::kKinematic) {
+        return 0.0;
+      }
+      const Vec3 u = velocity(bodies[body], state[body]).at(point - state[body].x);
+      return sign * impulses[i].dot(u);
+    };
+    work += work_of(contacts[i].body_b, 1.0);
+    work += work_of(contacts[i].body_a, -1.0);
   }
   return work;
 }

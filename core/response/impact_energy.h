@@ -4,6 +4,8 @@
 #include <signorini/core/model/contact.h>
 #include <signorini/lcp/types.h>
 
+#include <vector>
+
 namespace signorini {
 
 /// 1/2 f.(d'+ + d'-), J: the kinetic energy that the impulses f give (less the work of driven
@@ -20,6 +22,10 @@ struct ImpulseEnergy {
 /// @param state before or after: driven bodies keep their velocity
 [[nodiscard]] double driver_work(const Bodies& bodies, const State& state,
                                  const ContactSet& contacts, const lcp::VectorRef& f);
+
+/// The same with whole contact impulses on A (world axes, N s), at friction_point().
+[[nodiscard]] double driver_work(const Bodies& bodies, const State& state,
+                                 const ContactSet& contacts, const std::vector<Vec3>& impulses);
 
 /// gain / (before + |work|), dimensionless; 0 if gain = 0.
 [[nodiscard]] double relative_energy_gain(double gain, double before, double work);

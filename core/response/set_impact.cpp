@@ -1,9 +1,13 @@
 #include <signorini/core/model/number_text.h>
 #include <signorini/core/response/assembly.h>
 #include <signorini/core/response/energy_safe.h>
+#include <signorini/core/response/friction_cones.h>
 #include <signorini/core/response/impact_energy.h>
+#include <signorini/core/response/least_norm.h>
 #include <signorini/core/response/newton_impulse.h>
 #include <signorini/core/response/notes_impulse.h>
+#include <signorini/core/response/poisson_impulse.h>
+#include <signorini/core/response/reflections.h>
 #include <signorini/core/response/set_impact.h>
 #include <signorini/core/response/single_impulse.h>
 
@@ -13,9 +17,6 @@
 namespace signorini {
 namespace {
 
-/// What energy_safe promises, relative to T- + |driver work|: some thousand roundings of a double,
-/// room for the sums over the bodies and contacts of a set.
-constexpr double kMostGain = 1e-12;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 class SetImpact {
@@ -37,9 +38,7 @@ class SetImpact {
   }
 
   SetOutcome resolve() {
-    lcp::Vector f_e = contacts_.size() == 1                ? solve_single()
-                      : settings_.law == ImpactLaw::kNotes ? solve_notes()
-                                                           : solve_newton();
+    lcp::Vector f_e = contacts_.size() == 1 ? solve_single() : solve_law();
     if (!settings_.energy_safe) {
       accept(out_.law.status, std::move(f_e), 1.0);
     } else {
@@ -49,6 +48,15 @@ class SetImpact {
   }
 
  private:
+  lcp::Vector solve_law() {
+    switch (settings_.law) {
+      case ImpactLaw::kNotes: return solve_notes();
+      case ImpactLaw::kPoisson: return solve_poisson();
+      case ImpactLaw::kReflections: return solve_reflections();
+      default: return solve_newton();
+    }
+  }
+
   /// The law in closed form; certified as the Newton LCP of one row.
   lcp::Vector solve_single() {
     const Contact& contact = contacts_.front();
@@ -67,6 +75,90 @@ class SetImpact {
   lcp::Vector solve_newton() {
     solver_.solve(newton_problem(rows_, contacts_, settings_.colliding_threshold), out_.law);
     return out_.law.z;
+  }
+
+  /// Compression and expansion. out_.law is the expansion's LCP, or the compression's where that
+  /// was not solved or nothing is given back.
+  lcp::Vector solve_poisson() {
+    if (!solve_plastic() || !is_colliding()) {
+      out_.law = out_.plastic;
+      return out_.plastic.z;
+    }
+    const lcp::Vector compression = compression_of_least_norm();
+    solver_.solve(expansion_problem(rows_, contacts_, compression), out_.law);
+    return poisson_impulses(contacts_, compression, out_.law.z);
+  }
+
+  /// Which f_c is given back matters where the contacts' e differ.
+  lcp::Vector compression_of_least_norm() {
+    const double e = contacts_.front().material.restitution;
+    const bool common = std::all_of(contacts_.begin(), contacts_.end(), [e](const Contact& one) {
+      return one.material.restitution == e;
+    });
+    const lcp::Vector& f_c = out_.plastic.z;
+    if (common) {
+      return f_c;
+    }
+    const double closed = residual_allowed(rows_, f_c, settings_.lcp.tolerance);
+    const lcp::Vector d_dot = gap_velocities_after(rows_, f_c);
+    std::vector<bool> active(contacts_.size());
+    for (std::size_t i = 0; i < active.size(); ++i) {
+      const auto row = static_cast<lcp::Index>(i);
+      active[i] = f_c[row] > 0.0 || d_dot[row] <= closed;
+    }
+    const LeastNorm least = least_norm(rows_, f_c, active, solver_);
+    if (!lcp::is_solved(least.status)) {
+      out_.detail = "compression impulses of least norm not found: " +
+                    std::string(lcp::to_string(least.status));
+    }
+    return least.forces;
+  }
+
+  /// Elastic reflections, drawn towards the plastic impulses by 1 - e.
+  lcp::Vector solve_reflections() {
+    if (!is_colliding() || !has_restitution()) {
+      solve_plastic();
+      out_.law = out_.plastic;
+      return out_.plastic.z;
+    }
+    ConeProblem cones;
+    ContactSet smooth = contacts_;
+    for (Contact& contact : smooth) {
+      contact.material.friction = 0.0;
+    }
+    assemble_cones(bodies_, before_, smooth, lcp::Vector::Zero(rows_.d_dot.size()), cones);
+    ReflectionOutcome outcome = generalized_reflections(
+        bodies_, before_, smooth, cones, settings_.lcp.tolerance, settings_.max_passes, solver_);
+    out_.law = std::move(outcome.worst);
+    out_.law.solver = "reflections over " + out_.law.solver;
+    out_.law.status = outcome.status;
+    out_.reflections = outcome.reflections;
+    const double e =
+        common_restitution(contacts_, rows_.d_dot, outcome.z, settings_.colliding_threshold);
+    if (!lcp::is_solved(outcome.status) || e == 1.0) {
+      return outcome.z;
+    }
+    if (!solve_plastic()) {
+      out_.law.status = out_.plastic.status;
+      return outcome.z;
+    }
+    return out_.plastic.z + e * (outcome.z - out_.plastic.z);
+  }
+
+  [[nodiscard]] bool is_colliding() const {
+    return (rows_.d_dot.array() < -settings_.colliding_threshold).any();
+  }
+
+  [[nodiscard]] bool has_restitution() const {
+    return std::any_of(contacts_.begin(), contacts_.end(),
+                       [](const Contact& one) { return one.material.restitution > 0.0; });
+  }
+
+  bool solve_plastic() {
+    if (out_.plastic.status == lcp::Status::kNotRun) {
+      solver_.solve(plastic_problem(rows_), out_.plastic);
+    }
+    return lcp::is_solved(out_.plastic.status);
   }
 
   lcp::Vector solve_notes() {
@@ -107,9 +199,9 @@ class SetImpact {
         return;
       }
     }
-    solver_.solve(plastic_problem(rows_), out_.plastic);
+    const bool plastic_exists = solve_plastic();
     const lcp::Vector& f_c = out_.plastic.z;
-    if (!lcp::is_solved(out_.plastic.status)) {
+    if (!plastic_exists) {
       accept(out_.plastic.status, f_c, kNaN);
     } else if (admissible) {
       blend(f_c, f_e);
@@ -151,7 +243,7 @@ class SetImpact {
       after += kinetic_energy(bodies_[k], after_[k]);
     }
     const double work = driver_work(bodies_, before_, contacts_, f);
-    return relative_energy_gain(after - before - work, before, work) <= kMostGain;
+    return relative_energy_gain(after - before - work, before, work) <= kMostEnergyGain;
   }
 
   void apply(const lcp::Vector& f) {
@@ -165,6 +257,10 @@ class SetImpact {
     out_.status = status;
     out_.theta = lcp::is_solved(status) ? theta : kNaN;
     out_.impulses = std::move(f);
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+      out_.contact_impulses.emplace_back(out_.impulses[static_cast<lcp::Index>(i)] *
+                                         contacts_[i].normal);
+    }
     if (lcp::is_solved(status)) {
       apply(out_.impulses);
     }

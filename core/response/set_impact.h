@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <string>
+#include <vector>
 
 namespace signorini {
 
@@ -11,11 +12,17 @@ namespace signorini {
 struct SetOutcome {
   lcp::Status status = lcp::Status::kNotRun;
   lcp::Vector impulses;
+  std::vector<Vec3> contact_impulses;  ///< on A, world, N s
+  int reflections = 0;                 ///< kReflections
   double theta = std::numeric_limits<double>::quiet_NaN();
   lcp::Result law;
   lcp::Result plastic;
   std::string detail;
 };
+
+/// What energy_safe promises, relative to T- + |driver work|: some thousand roundings of a double,
+/// room for the sums over the bodies and contacts of a set.
+inline constexpr double kMostEnergyGain = 1e-12;
 
 /// Of two endings: the first if it is not solved, else the less solved.
 [[nodiscard]] inline lcp::Status worse(lcp::Status a, lcp::Status b) {
@@ -25,7 +32,7 @@ struct SetOutcome {
   return b == lcp::Status::kSolved ? a : b;
 }
 
-/// The impact of one connected set of contacts by a simultaneous law (kNewton, kNotes), made
+/// The impact of one connected set of contacts by a simultaneous law without friction, made
 /// energy-safe if the settings say so. A set of one contact is answered in closed form.
 /// @param contacts one connected set, valid. @param solver settings.solver
 /// @param before the state of all bodies

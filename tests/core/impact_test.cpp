@@ -45,9 +45,12 @@ class SimultaneousLaw : public testing::TestWithParam<LawCase> {
 INSTANTIATE_TEST_SUITE_P(
     All, SimultaneousLaw,
     testing::Values(LawCase{ImpactLaw::kNewton, false}, LawCase{ImpactLaw::kNewton, true},
-                    LawCase{ImpactLaw::kNotes, false}, LawCase{ImpactLaw::kNotes, true}),
+                    LawCase{ImpactLaw::kNotes, false}, LawCase{ImpactLaw::kNotes, true},
+                    LawCase{ImpactLaw::kPoisson, false}, LawCase{ImpactLaw::kPoisson, true},
+                    LawCase{ImpactLaw::kReflections, false},
+                    LawCase{ImpactLaw::kReflections, true}),
     [](const auto& tested) {
-      return std::string(tested.param.law == ImpactLaw::kNewton ? "Newton" : "Notes") +
+      return std::string(to_string(tested.param.law)) +
              (tested.param.energy_safe ? "EnergySafe" : "Plain");
     });
 
@@ -69,6 +72,9 @@ TEST_P(SimultaneousLaw, TheWedgeGoesStraightBackUpForE1AndStopsForE0) {
 }
 
 TEST_P(SimultaneousLaw, TheTouchingCradleHasNoBreakAway) {
+  if (GetParam().law == ImpactLaw::kReflections) {
+    GTEST_SKIP() << "it has: impact_laws_test.cpp";
+  }
   const double s = 2.0;
   Scene scene = scenes::cradle(5, s, 1.0);
   const ImpactReport report = resolve(scene, settings());
@@ -140,6 +146,9 @@ TEST_P(SimultaneousLaw, AFarSupportLiftsWhenTheRodIsHitBeyondTheOther) {
 }
 
 TEST_P(SimultaneousLaw, ADrivenBodyDoesTheWork) {
+  if (GetParam().law == ImpactLaw::kReflections) {
+    GTEST_SKIP() << "the balls break away: impact_laws_test.cpp";
+  }
   const double speed = 2.0;
   for (const double e : {0.0, 0.5, 1.0}) {
     for (const bool paddle_is_a : {false, true}) {
@@ -249,7 +258,7 @@ TEST_P(SimultaneousLaw, StarvationIsItsOwnStatusAndChangesNothing) {
 TEST(NewtonImpact, OppositeWallsAreInfeasibleAndPlainChangesNothing) {
   Scene scene = scenes::opposite_walls(1.0, 0.5);
   const State before = scene.state;
-  const ImpactReport report = resolve(scene, {.energy_safe = false});
+  const ImpactReport report = resolve(scene, {.law = ImpactLaw::kNewton, .energy_safe = false});
   EXPECT_EQ(report.status, lcp::Status::kInfeasible);
   EXPECT_EQ(report.law_result.ray_bound, std::numeric_limits<double>::infinity());
   EXPECT_EQ(report.law_result.ray.size(), 2);
@@ -258,7 +267,7 @@ TEST(NewtonImpact, OppositeWallsAreInfeasibleAndPlainChangesNothing) {
 
 TEST(NewtonImpact, OppositeWallsAreAnsweredByThePlasticImpulsesWhenEnergySafe) {
   Scene scene = scenes::opposite_walls(1.0, 0.5);
-  const ImpactReport report = resolve(scene, {});
+  const ImpactReport report = resolve(scene, {.law = ImpactLaw::kNewton});
   EXPECT_EQ(report.status, lcp::Status::kSolved);
   EXPECT_EQ(report.law_status, lcp::Status::kInfeasible);
   EXPECT_EQ(report.plastic_result.status, lcp::Status::kSolved);
@@ -277,7 +286,7 @@ TEST(NewtonImpact, OppositeWallsWithRoundedNormalsHaveABoundZ) {
   }
   scene.contacts[1].normal = turn * Vec3(-1, 1e-9, 0).normalized();
   scene.state[0].p = turn * scene.state[0].p;
-  const ImpactReport report = resolve(scene, {});
+  const ImpactReport report = resolve(scene, {.law = ImpactLaw::kNewton});
   EXPECT_TRUE(report.law_status == lcp::Status::kNoSolutionBelow ||
               report.law_status == lcp::Status::kInfeasible)
       << lcp::to_string(report.law_status);
@@ -288,7 +297,7 @@ TEST(NewtonImpact, OppositeWallsWithRoundedNormalsHaveABoundZ) {
 
 TEST(NewtonImpact, UnderAnOverhangItGainsAThirdOfTheEnergy) {
   Scene scene = scenes::overhang(1.0);
-  const ImpactReport report = resolve(scene, {.energy_safe = false});
+  const ImpactReport report = resolve(scene, {.law = ImpactLaw::kNewton, .energy_safe = false});
   EXPECT_TRUE(lcp::is_solved(report.status));
   // d'+ = (1, 0), so V+ = (1/sqrt 3, 1)
   EXPECT_LE((scene.velocity_of(0).linear - Vec3(1 / std::sqrt(3.0), 1, 0)).norm(), 1e-12);
@@ -373,7 +382,7 @@ TEST(EnergySafeImpact, EachConnectedSetHasItsOwnFate) {
   scene.touch(far, 1, Vec3(9, -0.5, 0), Vec3(0, 1, 0), 1.0);
   scene.touch(overhung, 1, Vec3(19, 0, 0), Vec3(0, 1, 0), 1.0);
   scene.touch(overhung, 1, Vec3(19, 0, 0), Vec3(0.5 * std::sqrt(3.0), -0.5, 0), 1.0);
-  const ImpactReport report = resolve(scene, {});
+  const ImpactReport report = resolve(scene, {.law = ImpactLaw::kNewton});
   EXPECT_EQ(report.set_of_contact, (std::vector<int>{0, 0, 1, 2, 2}));
   ASSERT_EQ(report.theta.size(), 3);
   EXPECT_EQ(report.theta[0], 0.0);
@@ -536,8 +545,9 @@ TEST(ImpactInput, BadBodiesStatesAndContactsAreNamed) {
 }
 
 TEST(ImpactLaws, EveryLawHasAName) {
-  for (const ImpactLaw law : {ImpactLaw::kSequentialOnce, ImpactLaw::kSequentialRepeated,
-                              ImpactLaw::kNewton, ImpactLaw::kNotes}) {
+  for (const ImpactLaw law :
+       {ImpactLaw::kSequentialOnce, ImpactLaw::kSequentialRepeated, ImpactLaw::kNewton,
+        ImpactLaw::kNotes, ImpactLaw::kPoisson, ImpactLaw::kReflections}) {
     EXPECT_NE(to_string(law), to_string(static_cast<ImpactLaw>(9)));
   }
 }

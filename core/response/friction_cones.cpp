@@ -1,0 +1,66 @@
+#include <signorini/core/response/friction_cones.h>
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace signorini {
+
+void assemble_cones(const Bodies& bodies, const State& free_state, const ContactSet& contacts,
+                    const lcp::VectorRef& allowance, ConeProblem& out) {
+  if (allowance.size() != static_cast<lcp::Index>(contacts.size())) {
+    throw std::invalid_argument("allowance: must have one number a contact (" +
+                                std::to_string(contacts.size()) + "), got " +
+                                std::to_string(allowance.size()));
+  }
+  NormalRows rows;
+  start_rows(bodies, free_state, contacts, rows);
+  ConeProblem fresh;
+  std::vector<double> q;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const Contact& contact = contacts[i];
+    fresh.normal_row.push_back(rows.A.rows());
+    fresh.frames.emplace_back();
+    fresh.friction.push_back(contact.material.friction);
+    add_row(free_state, contact, contact.normal, contact.point_a, contact.point_b, rows);
+    q.push_back(gap_velocity(bodies, free_state, contact) + allowance[static_cast<lcp::Index>(i)]);
+    if (contact.material.friction > 0.0) {
+      const Vec3 slip = slip_velocity(bodies, free_state, contact);
+      const TangentFrame frame = tangent_frame(contact.normal, slip);
+      for (const Vec3& tangent : {frame.t1, frame.t2}) {
+        add_tangent_row(free_state, contact, tangent, rows);
+        q.push_back(tangent.dot(slip));
+      }
+      fresh.frames.back() = frame;
+      fresh.problem.cones.push_back({.normal_row = fresh.normal_row.back(),
+                                     .dimension = 3,
+                                     .coefficient = contact.material.friction});
+    }
+  }
+  fresh.problem.q = Eigen::Map<const lcp::Vector>(q.data(), static_cast<lcp::Index>(q.size()));
+  fresh.problem.M = std::move(rows.A);
+  out = std::move(fresh);
+}
+
+lcp::Vector normal_impulses(const ConeProblem& cones, const lcp::VectorRef& z) {
+  lcp::Vector f(static_cast<lcp::Index>(cones.normal_row.size()));
+  for (lcp::Index i = 0; i < f.size(); ++i) {
+    f[i] = z[cones.normal_row[i]];
+  }
+  return f;
+}
+
+std::vector<Vec3> contact_impulses(const ConeProblem& cones, const ContactSet& contacts,
+                                   const lcp::VectorRef& z) {
+  std::vector<Vec3> impulses;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const int row = cones.normal_row[i];
+    impulses.emplace_back(z[row] * contacts[i].normal);
+    if (cones.friction[i] > 0.0) {
+      impulses.back() += z[row + 1] * cones.frames[i].t1 + z[row + 2] * cones.frames[i].t2;
+    }
+  }
+  return impulses;
+}
+
+}  // namespace signorini

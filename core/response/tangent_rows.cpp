@@ -1,0 +1,46 @@
+#include <signorini/core/response/tangent_rows.h>
+
+#include <utility>
+
+namespace signorini {
+
+TangentFrame tangent_frame(const Vec3& normal, const Vec3& slip) {
+  const Vec3 tangential = slip - slip.dot(normal) * normal;
+  const double speed = tangential.norm();
+  const Vec3 t1 = speed >= kAligningSlip ? Vec3(tangential / speed) : normal.unitOrthogonal();
+  return {t1, normal.cross(t1)};
+}
+
+Vec3 friction_point(const Contact& contact) {
+  return 0.5 * (contact.point_a + contact.point_b);
+}
+
+Vec3 slip_velocity(const Bodies& bodies, const State& state, const Contact& contact) {
+  const int a = contact.body_a;
+  const int b = contact.body_b;
+  const Vec3 point = friction_point(contact);
+  return velocity(bodies[a], state[a]).at(point - state[a].x) -
+         velocity(bodies[b], state[b]).at(point - state[b].x);
+}
+
+void add_tangent_row(const State& state, const Contact& contact, const Vec3& tangent,
+                     NormalRows& rows) {
+  const Vec3 point = friction_point(contact);
+  add_row(state, contact, tangent, point, point, rows);
+}
+
+void apply_contact_impulses(const Bodies& bodies, const ContactSet& contacts,
+                            const std::vector<Vec3>& impulses, State& state) {
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const Vec3 point = friction_point(contacts[i]);
+    for (const auto& [body, sign] :
+         {std::pair{contacts[i].body_a, 1.0}, {contacts[i].body_b, -1.0}}) {
+      if (bodies[body].is_dynamic()) {
+        state[body].p += sign * impulses[i];
+        state[body].L += (point - state[body].x).cross(sign * impulses[i]);
+      }
+    }
+  }
+}
+
+}  // namespace signorini
