@@ -2,6 +2,8 @@
 
 #include <signorini/core/response/assembly.h>
 #include <signorini/core/response/energy_safe.h>
+#include <signorini/core/response/friction_cones.h>
+#include <signorini/core/response/reflections.h>
 
 #include "bench/random_impact.h"
 
@@ -16,9 +18,11 @@
 namespace signorini::bench {
 namespace {
 
-constexpr double kGain = 1e-12;       // what energy-safe promises, relative
-constexpr double kIdentity = 1e-12;   // two sums of some hundred terms of the same numbers
-constexpr double kTolerance = 1e-12;  // of the LCPs and of the check that f is admissible
+constexpr double kGain = 1e-12;           // what energy-safe promises, relative
+constexpr double kIdentity = 1e-12;       // two sums of some hundred terms of the same numbers
+constexpr double kTolerance = 1e-12;      // of the LCPs and of the check that f is admissible
+constexpr double kConeTolerance = 1e-10;  // the same with friction
+constexpr int kMostReflections = 500;     // what needs more is answered by the plastic impulses
 constexpr double kSeparatingShare = 0.3;
 constexpr std::size_t kMostComplaints = 20;
 
@@ -31,10 +35,47 @@ bool shown_infeasible(lcp::Status status) {
   return status == lcp::Status::kInfeasible || status == lcp::Status::kNoSolutionBelow;
 }
 
+/// Every impulse in its cone and no contact approaching, to the tolerance or the rounding.
+bool is_in_cones(const RandomImpact& impact, const ImpactReport& report) {
+  const auto count = static_cast<lcp::Index>(impact.contacts.size());
+  ConeProblem cones;
+  assemble_cones(impact.bodies, impact.state, impact.contacts, lcp::Vector::Zero(count), cones);
+  lcp::Vector z(cones.problem.size());
+  lcp::Vector diagonal;
+  cones.A().diagonal(diagonal);
+  double worst = 0.0;  // m/s
+  for (std::size_t i = 0; i < impact.contacts.size(); ++i) {
+    const Vec3& f = report.contact_impulses[i];
+    const int row = cones.normal_row[i];
+    const double normal = f.dot(impact.contacts[i].normal);
+    z[row] = normal;
+    const Vec3 tangential = f - normal * impact.contacts[i].normal;
+    if (cones.friction[i] > 0.0) {
+      z[row + 1] = f.dot(cones.frames[i].t1);
+      z[row + 2] = f.dot(cones.frames[i].t2);
+    }
+    const double outside = std::max(-normal, tangential.norm() - cones.friction[i] * normal);
+    worst = std::max(worst, diagonal[row] * outside);
+  }
+  const double allowed = velocity_allowed(cones, z, kConeTolerance);
+  lcp::Vector after(z.size());
+  cones.A().multiply(z.data(), after.data());
+  after += cones.problem.q;
+  for (std::size_t i = 0; i < impact.contacts.size(); ++i) {
+    // A residual |P_K(-u~)| of `allowed` is an approach of sqrt(1 + mu^2) times it.
+    const double approach = -after[cones.normal_row[i]] / std::hypot(1.0, cones.friction[i]);
+    worst = std::max(worst, approach);
+  }
+  return worst <= allowed;
+}
+
 class Study {
  public:
-  explicit Study(const ImpactOptions& options) : seed_(options.seed), recorder_(options.recorder) {
-    for (const ImpactLaw law : {ImpactLaw::kNewton, ImpactLaw::kNotes}) {
+  explicit Study(const ImpactOptions& options) : options_(options) {
+    for (const ImpactLaw law : options.laws) {
+      if (has_friction() && law != ImpactLaw::kNewton && law != ImpactLaw::kReflections) {
+        continue;
+      }
       for (const bool safe : {false, true}) {
         ImpactRow row;
         row.law = law;
@@ -47,7 +88,7 @@ class Study {
   }
 
   void run_impact(int index) {
-    const RandomImpact impact = draw_random_impact(seed_, index);
+    const RandomImpact impact = draw_random_impact(options_.seed, index, options_.impact);
     NormalRows rows;
     assemble_normals(impact.bodies, impact.state, impact.contacts, rows);
     separating_ += (rows.d_dot.array() > 0.0).count();
@@ -57,14 +98,16 @@ class Study {
       ImpactSettings settings;
       settings.law = counts_.rows[r].law;
       settings.energy_safe = counts_.rows[r].energy_safe;
-      settings.lcp.tolerance = kTolerance;
-      settings.lcp.recorder = recorder_;
+      settings.friction = has_friction();
+      settings.max_passes = kMostReflections;
+      settings.lcp.tolerance = has_friction() ? kConeTolerance : kTolerance;
+      settings.lcp.recorder = options_.recorder;
       State state = impact.state;
       ImpactReport report;
       resolve_impact(impact.bodies, impact.contacts, settings, state, report);
       ++counts_.rows[r].statuses[report.status];
       if (lcp::is_solved(report.status)) {
-        measure(index, rows, report, r);
+        measure(index, impact, rows, report, r);
       } else if (settings.energy_safe) {
         count_unanswered(index, impact, report);
       }
@@ -86,15 +129,26 @@ class Study {
       }
       if (row.energy_safe) {
         counts_.worst_safe_gain = std::max(counts_.worst_safe_gain, row.worst_gain);
-      } else {
-        (row.law == ImpactLaw::kNewton ? counts_.newton_gains : counts_.notes_gains) = row.gained;
+      } else if (row.law == ImpactLaw::kNewton) {
+        counts_.newton_gains = row.gained;
+      } else if (row.law == ImpactLaw::kNotes) {
+        counts_.notes_gains = row.gained;
       }
     }
     return std::move(counts_);
   }
 
  private:
-  void measure(int index, const NormalRows& rows, const ImpactReport& report, std::size_t r) {
+  [[nodiscard]] bool has_friction() const { return options_.impact.most_friction > 0.0; }
+
+  [[nodiscard]] bool is_answer_admissible(const RandomImpact& impact, const NormalRows& rows,
+                                          const ImpactReport& report) const {
+    return has_friction() ? is_in_cones(impact, report)
+                          : is_admissible(rows, report.impulses, kTolerance);
+  }
+
+  void measure(int index, const RandomImpact& impact, const NormalRows& rows,
+               const ImpactReport& report, std::size_t r) {
     ImpactRow& row = counts_.rows[r];
     const double gain = report.relative_energy_gain();
     row.worst_gain = std::max(row.worst_gain, gain);
@@ -112,7 +166,7 @@ class Study {
     const double difference = std::abs(report.energy_gain() - report.gain_from_impulses);
     const double identity = energies > 0.0 ? difference / energies : difference;
     row.worst_identity = std::max(row.worst_identity, identity);
-    const bool admissible = is_admissible(rows, report.impulses, kTolerance);
+    const bool admissible = is_answer_admissible(impact, rows, report);
     row.inadmissible += admissible ? 0 : 1;
     if (!(identity <= kIdentity) || (row.energy_safe && !(gain <= kGain && admissible))) {
       complain(index, row,
@@ -124,6 +178,10 @@ class Study {
   void count_unanswered(int index, const RandomImpact& impact, const ImpactReport& report) {
     if (has_driven_body(impact) && shown_infeasible(report.status)) {
       ++counts_.squeezed;
+      return;
+    }
+    if (has_friction()) {
+      ++counts_.unsolved_coulomb;
       return;
     }
     ++counts_.unanswered;
@@ -142,8 +200,7 @@ class Study {
     }
   }
 
-  std::uint64_t seed_;
-  lcp::SolveRecorder* recorder_;
+  ImpactOptions options_;
   ImpactCounts counts_;
   std::vector<std::vector<double>> gains_;  // above kGain, one list a row
   Eigen::Index separating_ = 0;
@@ -166,12 +223,12 @@ std::string statuses_text(const ImpactRow& row) {
 void print_table(const ImpactCounts& counts, std::ostream& out) {
   fmt::print(out, "{} impacts, {} contacts, {:.1f} % of them separating before the impact\n\n",
              counts.impacts, counts.contacts, 100.0 * counts.separating_share);
-  fmt::print(out, "{:<8} {:<12} {:>7} {:>7} {:>11} {:>11} {:>8} {:>8} {:>6} {:>13} {:>10}\n", "law",
-             "form", "solved", "gained", "worst gain", "median gain", "0<theta<1", "theta=0",
+  fmt::print(out, "{:<11} {:<12} {:>7} {:>7} {:>11} {:>11} {:>8} {:>8} {:>6} {:>13} {:>10}\n",
+             "law", "form", "solved", "gained", "worst gain", "median gain", "0<theta<1", "theta=0",
              "f bad", "worst approach", "identity");
   for (const ImpactRow& row : counts.rows) {
     fmt::print(out,
-               "{:<8} {:<12} {:>7} {:>7} {:>11.3g} {:>11.3g} {:>8} {:>8} {:>6} {:>13.2g} "
+               "{:<11} {:<12} {:>7} {:>7} {:>11.3g} {:>11.3g} {:>8} {:>8} {:>6} {:>13.2g} "
                "{:>10.2g}\n",
                to_string(row.law), row.energy_safe ? "energy-safe" : "plain", row.solved(),
                row.gained, row.worst_gain, row.median_gain, row.reduced, row.replaced,
@@ -185,10 +242,12 @@ void print_table(const ImpactCounts& counts, std::ostream& out) {
 }
 
 void print_verdict(const ImpactCounts& counts, std::ostream& out) {
-  fmt::print(out,
-             "\nunanswered {}, squeezed by driven bodies {}; worst energy-safe gain {:.3g}: {}\n",
-             counts.unanswered, counts.squeezed, counts.worst_safe_gain,
-             counts.passed() ? "PASS" : "FAIL");
+  fmt::print(
+      out,
+      "\nunanswered {}, Coulomb unsolved {}, squeezed by driven bodies {}; worst energy-safe "
+      "gain {:.3g}: {}\n",
+      counts.unanswered, counts.unsolved_coulomb, counts.squeezed, counts.worst_safe_gain,
+      counts.passed() ? "PASS" : "FAIL");
   for (const std::string& complaint : counts.complaints) {
     fmt::print(out, "{}\n", complaint);
   }
@@ -230,8 +289,11 @@ ImpactCounts run_impact_study(const ImpactOptions& options, std::ostream& out) {
     throw std::invalid_argument("impacts: must be >= 0, got " + std::to_string(options.impacts));
   }
   Study study(options);
+  if (options.first < 0) {
+    throw std::invalid_argument("first: must be >= 0, got " + std::to_string(options.first));
+  }
   for (int index = 0; index < options.impacts; ++index) {
-    study.run_impact(index);
+    study.run_impact(options.first + index);
     show_progress(index + 1, options.impacts);
   }
   ImpactCounts counts = study.finish();

@@ -4,6 +4,7 @@
 
 #include "bench/fuzz_command.h"
 #include "bench/impact_study.h"
+#include "bench/laws_study.h"
 #include "bench/one_thread.h"
 #include "bench/peers_command.h"
 #include "bench/scaling_study.h"
@@ -12,6 +13,11 @@
 #ifdef SIGNORINI_HAS_COLLISION
 #include "bench/collision_command.h"
 #endif
+
+#ifdef SIGNORINI_HAS_BULLET
+#include "bench/bullet_laws.h"
+#endif
+
 #ifdef SIGNORINI_HAS_GMP
 #include "bench/exactness_study.h"
 #endif
@@ -24,7 +30,9 @@
 #include <fmt/format.h>
 #include <iostream>
 #include <memory>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace signorini::bench {
 namespace {
@@ -101,13 +109,54 @@ int run_exactness([[maybe_unused]] const StudyOptions& options) {
 #endif
 }
 
-int run_impacts(const StudyOptions& options) {
+/// What `impacts` is asked beside StudyOptions.
+struct ImpactSetOptions {
+  int first = 0;
+  RandomImpactOptions impact = {};
+  std::vector<std::string> laws = {};  // empty: all
+};
+
+ImpactLaw simultaneous_law(const std::string& name) {
+  for (const ImpactLaw law : ImpactOptions{}.laws) {
+    if (name == to_string(law)) {
+      return law;
+    }
+  }
+  throw std::invalid_argument("--laws: must be of Newton, notes, Poisson, reflections, got " +
+                              name);
+}
+
+int run_impacts(const StudyOptions& options, const ImpactSetOptions& set) {
   make_folder(options);
   const Dump dump;
-  const ImpactCounts counts = run_impact_study(
-      {.impacts = options.count, .seed = options.seed, .recorder = dump.recorder()}, std::cout);
+  ImpactOptions study;
+  study.impacts = options.count;
+  study.seed = options.seed;
+  study.recorder = dump.recorder();
+  study.first = set.first;
+  study.impact = set.impact;
+  if (!set.laws.empty()) {
+    study.laws.clear();
+    for (const std::string& name : set.laws) {
+      study.laws.push_back(simultaneous_law(name));
+    }
+  }
+  const ImpactCounts counts = run_impact_study(study, std::cout);
   write_csv(options, "impacts", counts.to_csv());
   return counts.passed() ? kClaimsHold : kWrongClaim;
+}
+
+int run_laws(const StudyOptions& options) {
+  make_folder(options);
+  std::vector<LawContestant> laws = our_laws();
+#ifdef SIGNORINI_HAS_BULLET
+  laws.push_back(bullet_law(10));
+  laws.push_back(bullet_law(1000));
+#endif
+  const std::vector<LawRow> rows =
+      run_laws_study({.impacts = options.count, .seed = options.seed}, laws, std::cout);
+  write_csv(options, "laws", laws_csv(rows));
+  return kClaimsHold;
 }
 
 int run_scaling(const StudyOptions& options) {
@@ -131,8 +180,30 @@ int run(int argc, char** argv) {
   const CLI::App* exactness_command =
       add_study(app, "exactness", "Small LCPs with exact data, every claim judged in rationals",
                 "problems", exactness);
-  add_study(app, "impacts", "Random multi-contact impacts: the kinetic energy each law gains",
-            "impacts", impacts);
+  ImpactSetOptions impact_set;
+  CLI::App* impacts_command =
+      add_study(app, "impacts", "Random multi-contact impacts: the kinetic energy each law gains",
+                "impacts", impacts);
+  impacts_command->add_option("--first", impact_set.first, "Number of the first impact")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  impacts_command
+      ->add_option("--mass-ratio", impact_set.impact.mass_ratio, "Heaviest over lightest body")
+      ->check(CLI::Range(1.0, 1e12))
+      ->capture_default_str();
+  impacts_command
+      ->add_option("--friction", impact_set.impact.most_friction,
+                   "Coulomb's friction, mu up to this (laws Newton and reflections)")
+      ->check(CLI::Range(0.0, 1e3))
+      ->capture_default_str();
+  impacts_command
+      ->add_option("--laws", impact_set.laws,
+                   "Of Newton, notes, Poisson, reflections (default: all)")
+      ->delimiter(',');
+  StudyOptions laws{.count = 1000};
+  const CLI::App* laws_command =
+      add_study(app, "laws", "The five desiderata of an impact law, for each law and for Bullet",
+                "impacts", laws);
   StudyOptions scaling{.count = 10000};
   CLI::App* scaling_command = app.add_subcommand(
       "scaling", "The interior point from 1000 rows up, beside the factorisation floor");
@@ -172,7 +243,10 @@ int run(int argc, char** argv) {
   if (fuzz.is_asked()) {
     return fuzz.run();
   }
-  return exactness_command->parsed() ? run_exactness(exactness) : run_impacts(impacts);
+  if (laws_command->parsed()) {
+    return run_laws(laws);
+  }
+  return exactness_command->parsed() ? run_exactness(exactness) : run_impacts(impacts, impact_set);
 }
 
 }  // namespace

@@ -13,7 +13,8 @@ constexpr double kSeparating = 0.45;  // probability that a group of contacts se
 
 class Generator {
  public:
-  explicit Generator(std::seed_seq& seed) : random_(seed) {}
+  Generator(std::seed_seq& seed, const RandomImpactOptions& options)
+      : options_(options), random_(seed) {}
 
   RandomImpact draw() {
     const int bodies = static_cast<int>(std::exp(uniform(std::log(2.0), std::log(21.0))));
@@ -57,7 +58,8 @@ class Generator {
   void add_body(bool must_be_dynamic) {
     Body body;
     body.kind = must_be_dynamic ? BodyKind::kDynamic : kind();
-    body.mass = std::pow(10.0, uniform(-1.5, 1.5));
+    const double decades = 0.5 * std::log10(options_.mass_ratio);
+    body.mass = std::pow(10.0, uniform(-decades, decades));
     const double size = uniform(0.3, 1.5);
     const double xx = uniform(0.02, 1.0);
     const double yy = uniform(0.02, 1.0);
@@ -152,19 +154,23 @@ class Generator {
   void add_contact(Contact contact) {
     const double draw = uniform(0.0, 1.0);
     contact.material.restitution = draw < 0.2 ? 0.0 : (draw < 0.4 ? 1.0 : uniform(0.0, 1.0));
+    if (options_.most_friction > 0.0) {
+      contact.material.friction = chance(0.2) ? 0.0 : uniform(0.0, options_.most_friction);
+    }
     impact_.contacts.push_back(contact);
   }
 
+  RandomImpactOptions options_;
   std::mt19937_64 random_;
   RandomImpact impact_;
 };
 
 }  // namespace
 
-RandomImpact draw_random_impact(std::uint64_t seed, int index) {
+RandomImpact draw_random_impact(std::uint64_t seed, int index, const RandomImpactOptions& options) {
   std::seed_seq mixed{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
                       static_cast<std::uint32_t>(index)};
-  return Generator(mixed).draw();
+  return Generator(mixed, options).draw();
 }
 
 }  // namespace signorini::bench

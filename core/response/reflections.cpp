@@ -209,14 +209,8 @@ double velocity_allowed(const ConeProblem& cones, const lcp::VectorRef& z, doubl
   if (z.size() == 0) {
     return 0.0;
   }
-  double fastest = 0.0;
-  for (const int row : cones.normal_row) {
-    fastest = std::max(fastest, std::abs(cones.problem.q[row]));
-  }
-  // The floor is relative to |q|_inf of all rows, tangents included.
-  const double largest = cones.problem.q.cwiseAbs().maxCoeff();
-  const double floor = lcp::certify(cones.problem, z).rounding_floor * largest;
-  return std::max(tolerance * fastest, kFloors * floor);
+  const double floor = lcp::certify(cones.problem, z).rounding_floor;
+  return std::max(tolerance, kFloors * floor) * cones.problem.q.cwiseAbs().maxCoeff();
 }
 
 }  // namespace signorini

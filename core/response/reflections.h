@@ -52,7 +52,7 @@ inline constexpr int kReflectionsAtEase = 100;
 ///
 /// @param contacts one connected set, valid. Their restitution plays no part: e = 1
 /// @param cones of these contacts with zero allowance; its q is u-
-/// @param tolerance a contact approaches where d' < -tolerance |d'-|_inf and beyond the rounding
+/// @param tolerance a contact approaches where d' < -velocity_allowed()
 /// @param solver takes factored LCPs, or cones where there is friction
 [[nodiscard]] ReflectionOutcome generalized_reflections(const Bodies& bodies, const State& before,
                                                         const ContactSet& contacts,
@@ -65,8 +65,8 @@ inline constexpr int kReflectionsAtEase = 100;
 [[nodiscard]] double common_restitution(const ContactSet& contacts, const lcp::VectorRef& d_dot,
                                         const lcp::VectorRef& f, double threshold);
 
-/// Where the rounding of A z + q ends and the tolerance begins, m/s: max(tolerance, 4 floors)
-/// |q_N|_inf, q_N the normal rows; the floor that of lcp::Certificate.
+/// How far z and A z + q may miss their bounds, m/s: max(tolerance, 4 floors) |q|_inf, tangents
+/// included, the floor that of lcp::Certificate.
 [[nodiscard]] double velocity_allowed(const ConeProblem& cones, const lcp::VectorRef& z,
                                       double tolerance);
 
