@@ -92,14 +92,22 @@ Track run_signorini(const Scene& scene, const TimeStepSettings& settings, const 
   return track;
 }
 
+std::string_view integrator_name(Integrator integrator) {
+  switch (integrator) {
+    case Integrator::kSemiImplicit: return "semi-implicit";
+    case Integrator::kRungeKutta4: return "Runge-Kutta 4";
+    case Integrator::kEnergyMomentum: return "energy-momentum";
+  }
+  return "unknown";
+}
+
 std::vector<std::string> describe(const TimeStepSettings& settings) {
   const bool quaternion = settings.orientation == OrientationScheme::kQuaternion;
-  const bool rk4 = settings.integrator == Integrator::kRungeKutta4;
   return {
       fmt::format("Signorini: time stepping, step {:.9g} s, gravity ({:g}, {:g}, {:g}) m/s^2",
                   settings.step, settings.gravity.x(), settings.gravity.y(), settings.gravity.z()),
       fmt::format("Signorini: {} integration, orientation as a {}",
-                  rk4 ? "Runge-Kutta 4" : "semi-implicit",
+                  integrator_name(settings.integrator),
                   quaternion ? "normalised quaternion" : "matrix with Gram-Schmidt"),
       fmt::format("Signorini: solver {}, tolerance {:g}; friction pyramid of {} sides; contact "
                   "margin {:g} m; touching below {:g} m; restitution threshold {:g} m/s",

@@ -6,6 +6,7 @@
 #include <signorini/validation/track.h>
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace signorini::validation {
@@ -19,6 +20,9 @@ namespace signorini::validation {
 /// @param stop null, or a flag that ends the run early (Track::interrupted)
 [[nodiscard]] Track run_signorini(const Scene& scene, const TimeStepSettings& settings,
                                   const StopFlag* stop = nullptr);
+
+/// The text of an integrator, for example "energy-momentum".
+[[nodiscard]] std::string_view integrator_name(Integrator integrator);
 
 /// How the run was made, one line a setting, for the report.
 [[nodiscard]] std::vector<std::string> describe(const TimeStepSettings& settings);

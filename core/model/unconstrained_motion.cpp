@@ -1,3 +1,4 @@
+#include <signorini/core/model/free_rotation.h>
 #include <signorini/core/model/number_text.h>
 #include <signorini/core/model/unconstrained_motion.h>
 
@@ -51,6 +52,17 @@ typename Form::Value advance_orientation(const Body& body, const Vec3& L, const 
   return start + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
 }
 
+// The turn of the body's axes over a step of kEnergyMomentum, R its orientation at the start.
+Quat energy_momentum_turn(const Body& body, const Mat3& R, const Vec3& L, const Vec3& torque,
+                          double h) {
+  const Vec3 in_body = R.transpose() * (L + 0.5 * h * torque);
+  if (body.is_dynamic()) {
+    return free_rotation(body.inertia, in_body, h);
+  }
+  const double angle = h * in_body.norm();
+  return angle > 0.0 ? Quat(Eigen::AngleAxisd(angle, in_body.normalized())) : Quat::Identity();
+}
+
 // x and p; RK4 is exact for a constant force, so its four stages collapse.
 template <typename AnyState>
 void advance_position(const Body& body, const Vec3& force, double h, Integrator integrator,
@@ -60,8 +72,8 @@ void advance_position(const Body& body, const Vec3& force, double h, Integrator 
   } else if (body.is_dynamic()) {
     const Vec3 momentum_midway = state.p + 0.5 * h * force;
     state.p += h * force;
-    const bool semi_implicit = integrator == Integrator::kSemiImplicit;
-    state.x += h / body.mass * (semi_implicit ? state.p : momentum_midway);
+    const bool midway = integrator == Integrator::kRungeKutta4;
+    state.x += h / body.mass * (midway ? momentum_midway : state.p);
   }
 }
 
@@ -93,9 +105,14 @@ void integrate_free(const Body& body, const Vec3& force, const Vec3& torque, dou
     return;
   }
   const Vec3 load = body.is_dynamic() ? torque : Vec3::Zero();
-  state.q = Quat(advance_orientation<QuaternionForm>(body, state.L, load, step, integrator,
-                                                     state.q.coeffs()))
-                .normalized();
+  if (integrator == Integrator::kEnergyMomentum) {
+    const Mat3 R = state.q.toRotationMatrix();
+    state.q = (state.q * energy_momentum_turn(body, R, state.L, load, step)).normalized();
+  } else {
+    state.q = Quat(advance_orientation<QuaternionForm>(body, state.L, load, step, integrator,
+                                                       state.q.coeffs()))
+                  .normalized();
+  }
   state.L += step * load;
   advance_position(body, force, step, integrator, state);
 }
@@ -107,7 +124,9 @@ void integrate_free(const Body& body, const Vec3& force, const Vec3& torque, dou
     return;
   }
   const Vec3 load = body.is_dynamic() ? torque : Vec3::Zero();
-  state.R = advance_orientation<MatrixForm>(body, state.L, load, step, integrator, state.R);
+  state.R = integrator == Integrator::kEnergyMomentum
+                ? Mat3(state.R * energy_momentum_turn(body, state.R, state.L, load, step))
+                : advance_orientation<MatrixForm>(body, state.L, load, step, integrator, state.R);
   state.L += step * load;
   advance_position(body, force, step, integrator, state);
 }

@@ -16,6 +16,9 @@ enum class Integrator : std::uint8_t {
   kSemiImplicit,  ///< p, L first, then x and orientation with the new v and w; first order,
                   ///< symplectic in x
   kRungeKutta4,   ///< classical RK4 on the whole state; fourth order
+  /// x and p as kSemiImplicit; the rotation by free_rotation.h between two halves of the torque:
+  /// without torque L and the energy are kept to rounding; fourth order in the rotation.
+  kEnergyMomentum,
 };
 
 /// The state with its orientation as a matrix that is not forced to be a rotation: R = [U0 U1 U2].
@@ -33,9 +36,10 @@ struct MatrixState {
 ///
 /// Semi-implicit: p+ = p + h F, L+ = L + h tau, x+ = x + h p+/m, and an Euler step of the
 /// orientation with w = J^-1(R) L+. Under a constant force x_n = x_0 + n h v_0 + h^2 (F/m)
-/// n(n+1)/2, which is h/2 t F/m ahead of the parabola. RK4: classical, exact for x and p. Both
-/// leave L exactly as it is when tau = 0 (no bit changes). The quaternion is normalised here; the
-/// matrix is NOT orthonormalised here: see gram_schmidt().
+/// n(n+1)/2, which is h/2 t F/m ahead of the parabola. RK4: classical, exact for x and p. Energy
+/// and momentum: x, p as semi-implicit, L + h tau/2, free_rotation(), L + h tau/2 (kinematic
+/// bodies: the exact turn by h w). All leave L exactly as it is when tau = 0 (no bit changes). The
+/// quaternion is normalised here; the matrix is NOT orthonormalised here: see gram_schmidt().
 ///
 /// @param force, torque constant during the step, world axes, N and N m about the centre of mass.
 /// Only dynamic bodies feel them; kinematic bodies keep their velocity; fixed ones do nothing

@@ -140,10 +140,13 @@ void TimeStepper::move(const State& start, const ContactSet& contacts, State& st
     in_contact[contact.body_a] = true;
     in_contact[contact.body_b] = true;
   }
+  const Integrator in_rows = settings_.integrator == Integrator::kEnergyMomentum
+                                 ? Integrator::kEnergyMomentum
+                                 : Integrator::kSemiImplicit;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     if (in_contact[k]) {
-      integrate_free(bodies_[k], Vec3::Zero(), Vec3::Zero(), settings_.step,
-                     Integrator::kSemiImplicit, settings_.orientation, state[k]);
+      integrate_free(bodies_[k], Vec3::Zero(), Vec3::Zero(), settings_.step, in_rows,
+                     settings_.orientation, state[k]);
     } else {
       const Vec3 weight = bodies_[k].mass * bodies_[k].gravity_scale * settings_.gravity;
       state[k] = start[k];

@@ -18,9 +18,11 @@ struct TimeStepSettings {
   double step = 1.0 / 240.0;             ///< h, s, finite and > 0
   Vec3 gravity = Vec3(0.0, 0.0, -9.81);  ///< m/s^2, finite
   OrientationScheme orientation = OrientationScheme::kQuaternion;
-  /// Of the bodies that no contact row touches in the step. The others always move with their
-  /// velocity after the impulses (semi-implicit): that is what the contact rows speak about.
-  Integrator integrator = Integrator::kSemiImplicit;
+  /// Of the bodies that no contact row touches in the step. The others always move semi-implicitly
+  /// in x, with their velocity after the impulses: that is what the contact rows speak about. Their
+  /// rotation is by kEnergyMomentum if that is chosen here, else semi-implicit too. kEnergyMomentum
+  /// keeps energy and momentum of a free spin, and between impulses of a spin in contact.
+  Integrator integrator = Integrator::kEnergyMomentum;
   /// Sides k of the friction pyramid, even, >= 4. More sides: closer to the cone, k rows a contact.
   int pyramid_sides = 8;
   /// Contacts closer than this are in the LCP, with gap/h as their allowance; m, finite and >= 0.
@@ -80,7 +82,8 @@ inline constexpr double kRestingSpeed = 1e-6;
 ///
 /// 1. Find the contacts with gap <= margin. v* = v- + h M^-1 F in momenta: p* = p + h m g, L* = L,
 ///    w* = J^-1 L*. Torque-free rotation keeps L exactly; the gyroscopic effect comes from the new
-///    orientation in the next w.
+///    orientation in the next w: J^-1 is that of the orientation reached, so w* and the contact
+///    rows have the gyroscopic torque of the rotation so far in them.
 /// 2. allowance = e d'- (d'- from v-, not v*, so that a resting contact does not bounce) where gap
 ///    <= touching_tolerance and d'- < -restitution_threshold; else max(gap, 0)/h. Overlap is not
 ///    pushed out in the velocities. A contact that is apart, has e > 0 and would be caught by

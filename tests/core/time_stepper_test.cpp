@@ -446,6 +446,23 @@ TEST(TimeStepper, OneContactWithoutFrictionTakesNoSolver) {
   EXPECT_NEAR(report.normal_impulses[0], 2.0 * kG * kH, 1e-15);
 }
 
+TEST(TimeStepper, AnUnevenBallSpinsInContactWithoutLosingOrGainingEnergy) {
+  // The contact acts through the centre of mass: the spin is free, and its energy that of a top.
+  Body top = ball_body(1.0, 0.5);
+  top.inertia = Vec3(1, 2, 3).asDiagonal();
+  PlaneContacts contacts(Vec3::UnitZ(), {{TestBall{0.5}, {}}});
+  TimeStepper stepper({fixed_body(), top}, contacts, {.step = kH});
+  State state{at(Vec3::Zero()), at(Vec3(0, 0, 0.5))};
+  set_velocity(top, {Vec3::Zero(), Vec3(5, 7, 5)}, state[1]);
+  const BodyState start = state[1];
+  run(stepper, state, 2400,
+      [&](int, const StepReport& report) { EXPECT_EQ(report.contacts.size(), 1u); });
+  EXPECT_NEAR(kinetic_energy(top, state[1]), kinetic_energy(top, start),
+              1e-12 * kinetic_energy(top, start));
+  EXPECT_LE((state[1].L - start.L).norm(), 1e-12 * start.L.norm());
+  EXPECT_NEAR(state[1].x.z(), 0.5, 1e-9);
+}
+
 TEST(TimeStepper, MatrixAndQuaternionTellTheSameStory) {
   const Vec3 half(0.5, 0.3, 0.2);
   State end[2];

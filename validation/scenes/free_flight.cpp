@@ -76,11 +76,11 @@ void check_free_flight(const Scene& scene, const RunOptions& options, SceneRepor
                          .engine = track.engine,
                          .unit = "rad",
                          .reason =
-                             "q' = w q/2, normalised, turns by 2 atan(w h/2) a step: w t "
-                             "(w h)^2/12 behind, and 1 % for the next term"};
+                             "five turns of 2 atan(a_i w h/2) a step, sum a_i^3 = 0: their fifth "
+                             "powers leave w t (w h)^4/1074, and 7 % for the next term"};
     const double error = final_angle_error(scene, track);
     report.checks.push_back(
-        ours ? absolute(turn, error, 0.0, 1.01 * w * t * w * h * w * h / 12.0 + rounding)
+        ours ? absolute(turn, error, 0.0, w * t * std::pow(w * h, 4) / 1000.0 + rounding)
              : shown(turn, error, 0.0));
   });
 
