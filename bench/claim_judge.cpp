@@ -34,9 +34,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kRoundingCeiling = 1e-5;
 constexpr double kScaleRounding = 1e-9;
-constexpr double kWideRounding = 0x1p-6;  // 2^-58 of |M||z|, in floors of 2^-52
 constexpr int kFloorsAllowed = 4;
 constexpr int kBits = 2048;
+constexpr double kConeRounding = 0x1p-1000;  // more than kBits lose
 
 /// The bounds of every row at the given z, and its scale D. Rows in cones have neither.
 struct Rows {
@@ -277,7 +277,8 @@ std::string wrong_residual(const Problem& problem, const Result& result, double 
                        lcp::to_nearest_double(r.natural_floor));
   }
   const bool no_q = largest_q(problem) == 0.0;
-  const mpq_class rounding = r.natural_floor * kWideRounding;  // of w in long double
+  const mpq_class rounding =
+      problem.cones.empty() ? mpq_class(0) : mpq_class(r.natural_floor * kConeRounding);
   if (no_q ? r.unit_free > rounding
            : !within(r.unit_free, r.unit_free_floor, tolerance, result.status)) {
     return fmt::format("unit-free residual {:.3e}, certified {:.3e}, floor {:.1e}",

@@ -15,7 +15,7 @@ namespace signorini::bench {
 struct ExactResiduals {
   mpq_class natural;
   mpq_class natural_floor;
-  mpq_class unit_free;  ///< with q = 0: the numerator alone
+  mpq_class unit_free;  ///< with q = 0: the numerator alone, which must be 0
   mpq_class unit_free_floor;
 };
 [[nodiscard]] ExactResiduals exact_residuals(const lcp::Problem& problem, const lcp::Vector& z);
@@ -33,9 +33,9 @@ struct Verdict {
 
 /// Judges what a result claims, without knowing whether a solution exists:
 /// - kSolved: both residuals are <= tolerance, recomputed without rounding, but for a relative 1e-9
-///   (the scales D are rounded). With q = 0 the certificate asks for a numerator of 0; what
-///   rounding w to long double can hide, 2^-58 max |M||z|, is let pass. kSolvedToRounding: each is
-///   <= max(tolerance, min(4 floors, 1e-5)).
+///   (the scales D are rounded). With q = 0 the numerator of the unit-free one must be 0, as the
+///   certificate says (of cones: to 2^-1000). kSolvedToRounding: each is <= max(tolerance, min(4
+///   floors, 1e-5)).
 /// - kInfeasible: an LCP, ray >= 0, q.ray < 0, M^T ray <= 0. kNoSolutionBelow: Z is at most the
 ///   exact bound of the ray.
 /// - kInvalidInput exactly where find_bad_value() finds something; then z is NaN. In every other

@@ -1,4 +1,6 @@
 #include <signorini/lcp/certificate.h>
+#include <signorini/lcp/enclosed_product.h>
+#include <signorini/lcp/exact_sum.h>
 #include <signorini/lcp/friction_cone.h>
 #include <signorini/lcp/group_scale.h>
 
@@ -18,6 +20,9 @@ constexpr double kRoundingCeiling = 1e-5;
 // What the residual itself may have lost to long double's rounding, in floors (which are double's):
 // 2^-11, and some for the length of the sums.
 constexpr double kOwnRounding = 0x1p-10;
+// A numerator above this part of |M||z| is not 0, whatever rounding did.
+constexpr double kHidden = 0x1p-40;
+constexpr long double kWiden = 1.0L + 0x1p-58L;  // more than rounding a cone's norms may cost
 
 Certificate refuse() {
   Certificate certificate;
@@ -227,7 +232,9 @@ bool Certifier::measure(const Problem& problem, const VectorRef& z) {
   return true;
 }
 
-void Certifier::Total::add(int row, const Measure& measure, long double row_size, double q) {
+void Certifier::Total::add(int row, const Measure& measure, long double row_size, double q,
+                           long double z) {
+  is_zero = is_zero && z == 0.0L;
   most.natural = std::max(most.natural, measure.natural);
   if (measure.unit_free > most.unit_free || worst_row < 0) {
     most.unit_free = measure.unit_free;
@@ -243,6 +250,10 @@ void Certifier::Total::add(int row, const Measure& measure, long double row_size
   q_inf = std::max(q_inf, std::abs(q));
 }
 
+bool Certifier::Total::needs_exactness() const {
+  return q_inf == 0.0 && !is_zero && most.unit_free <= kHidden * size;
+}
+
 Certificate Certifier::Total::certificate() const {
   Certificate result;
   result.natural_residual = static_cast<double>(most.natural / (1.0L + q_inf));
@@ -251,7 +262,8 @@ Certificate Certifier::Total::certificate() const {
     result.unit_free_residual = static_cast<double>(most.unit_free / q_inf);
     result.rounding_floor = static_cast<double>(kEpsilon * size / q_inf);
   } else {
-    result.unit_free_residual = most.unit_free == 0.0L ? 0.0 : kInfinity;
+    const bool is_solved = is_zero ? most.unit_free == 0.0L : solved_exactly;
+    result.unit_free_residual = is_solved ? 0.0 : kInfinity;
     result.rounding_floor = 0.0;
   }
   result.backward_error = static_cast<double>(most.backward);
@@ -263,6 +275,74 @@ Certificate Certifier::Total::certificate() const {
   return result;
 }
 
+/// solved_exactly of the totals that need it. @param island of every row; null: all are one
+void Certifier::settle_exactly(const Problem& problem, const VectorRef& z,
+                               const std::vector<int>* island) {
+  if (std::ranges::none_of(totals_, &Total::needs_exactness)) {
+    return;
+  }
+  enclose_product(problem.M, z, product_);
+  limit_of_row_.assign(problem.size(), -1);
+  for (std::size_t k = 0; k < problem.limits.size(); ++k) {
+    limit_of_row_[problem.limits[k].row] = static_cast<int>(k);
+  }
+  for (Total& total : totals_) {
+    total.solved_exactly = total.needs_exactness();
+  }
+  for (Index i = 0; i < problem.size(); ++i) {
+    Total& total = totals_[island != nullptr ? (*island)[i] : 0];
+    if (total.solved_exactly) {
+      const int cone = problem.cones.empty() ? -1 : cone_of_row_[i];
+      total.solved_exactly = cone < 0 ? solves_row(problem, z, i) : solves_cone(problem, z, cone);
+    }
+  }
+}
+
+/// Whether r_i is 0 for w = M z, without rounding.
+bool Certifier::solves_row(const Problem& problem, const VectorRef& z, Index i) const {
+  int above_lower = 0;  // the signs of z - lower and upper - z
+  int below_upper = 0;
+  if (const int k = limit_of_row_[i]; k >= 0) {
+    const CoupledLimit& limit = problem.limits[k];
+    const double normal = std::max(z[limit.normal_row], 0.0);
+    ExactSum from_lower;
+    ExactSum to_upper;
+    from_lower.add_product(limit.coefficient, normal);
+    to_upper.add_product(limit.coefficient, normal);
+    from_lower.add_product(1.0, z[i]);
+    to_upper.add_product(-1.0, z[i]);
+    above_lower = from_lower.sign();
+    below_upper = to_upper.sign();
+  } else {
+    const auto sign = [](double lower, double upper) { return (lower < upper) - (lower > upper); };
+    above_lower = sign(problem.lower.size() > 0 ? problem.lower[i] : 0.0, z[i]);
+    below_upper = sign(z[i], problem.upper.size() > 0 ? problem.upper[i] : kInfinity);
+  }
+  const Interval& w = product_[i];
+  return above_lower >= 0 && below_upper >= 0 && (above_lower == 0 || w.upper <= 0.0L) &&
+         (below_upper == 0 || w.lower >= 0.0L);
+}
+
+/// The same of a cone, where z_c = 0 or w_c = 0; else false.
+bool Certifier::solves_cone(const Problem& problem, const VectorRef& z, std::size_t cone) const {
+  const auto [first, d, mu] = problem.cones[cone];
+  if (z.segment(first, d).isZero(0.0)) {
+    long double tangential = 0.0L;
+    for (int k = 1; k < d && problem.friction_law == FrictionLaw::kAssociated; ++k) {
+      const Interval& w = product_[first + k];
+      tangential = std::hypot(tangential, std::max(std::abs(w.lower), std::abs(w.upper)));
+    }
+    return product_[first].lower >= mu * tangential * kWiden;
+  }
+  for (int k = 0; k < d; ++k) {
+    if (!(product_[first + k].lower == 0.0L && product_[first + k].upper == 0.0L)) {
+      return false;
+    }
+  }
+  const long double normal = z[first];
+  return tangential_norm(d, z_.data() + first) * kWiden <= mu * normal && normal >= 0.0L;
+}
+
 Certificate Certifier::certify(const Problem& problem, const VectorRef& z, Vector* w) {
   const Index n = problem.size();
   if (!measure(problem, z)) {
@@ -271,15 +351,16 @@ Certificate Certifier::certify(const Problem& problem, const VectorRef& z, Vecto
     }
     return refuse();
   }
-  Total total;
+  totals_.assign(1, Total{});
   for (Index i = 0; i < n; ++i) {
-    total.add(static_cast<int>(i), measures_[i], size_[i], problem.q[i]);
+    totals_[0].add(static_cast<int>(i), measures_[i], size_[i], problem.q[i], z_[i]);
   }
+  settle_exactly(problem, z, nullptr);
   if (w != nullptr) {
     w->resize(n);
     std::copy(w_.begin(), w_.end(), w->data());
   }
-  return total.certificate();
+  return totals_[0].certificate();
 }
 
 void Certifier::certify_islands(const Problem& problem, const VectorRef& z, const Islands& islands,
@@ -290,8 +371,10 @@ void Certifier::certify_islands(const Problem& problem, const VectorRef& z, cons
   }
   totals_.assign(islands.count, Total{});
   for (Index i = 0; i < problem.size(); ++i) {
-    totals_[islands.island[i]].add(static_cast<int>(i), measures_[i], size_[i], problem.q[i]);
+    totals_[islands.island[i]].add(static_cast<int>(i), measures_[i], size_[i], problem.q[i],
+                                   z_[i]);
   }
+  settle_exactly(problem, z, &islands.island);
   certificates.resize(islands.count);
   std::ranges::transform(totals_, certificates.begin(), &Total::certificate);
 }

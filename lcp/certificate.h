@@ -1,5 +1,6 @@
 #pragma once
 
+#include <signorini/lcp/interval.h>
 #include <signorini/lcp/islands.h>
 #include <signorini/lcp/problem.h>
 #include <signorini/lcp/status.h>
@@ -29,8 +30,13 @@ struct Certificate {
   double natural_residual = kNaN;
   /// max_i D_i |r_i(D_i)| / |q|_inf, for an LCP max|min(M_ii z_i, w_i)| / |q|. Unit-free: other
   /// units of z and of w (one factor each) change nothing; rows are measured against the largest q,
-  /// so a row whose q is far below it counts for little. With q = 0: 0 if the numerator is 0,
-  /// +infinity otherwise. A cone counts as one row, D_c |r_c(D_c)|.
+  /// so a row whose q is far below it counts for little. A cone counts as one row, D_c |r_c(D_c)|.
+  ///
+  /// With q = 0 there is nothing to measure against: 0 if z solves the problem exactly, +infinity
+  /// otherwise. The numerator is then compared with 0 without rounding (enclosed_product.h); what
+  /// that leaves open (rows of a factored M whose J^T z is not 0, cones at their boundary) is
+  /// +infinity. z = 0 is exact as it is and costs nothing extra; another z costs about ten products
+  /// with M, and memory.
   double unit_free_residual = kNaN;
   /// eps max_i (|M||z| + |q|)_i / |q|_inf: what rounding z and w to double costs the unit-free
   /// residual. No solver that returns doubles can be asked for much less. Cones add
@@ -54,7 +60,8 @@ struct Certificate {
   int worst_row = -1;  ///< the row (of a cone: the normal) of the unit-free residual, -1 if n = 0
 };
 
-/// Computes certificates, and keeps its memory: nothing is allocated once capacity was reached.
+/// Computes certificates, and keeps its memory: nothing is allocated once capacity was reached (but
+/// for q = 0 and z != 0, see Certificate::unit_free_residual).
 class Certifier {
  public:
   /// See certify(), which is this with new memory.
@@ -90,7 +97,11 @@ class Certifier {
     long double natural_size = 0.0L;
     double q_inf = 0.0;
     int worst_row = -1;
-    void add(int row, const Measure& measure, long double row_size, double q);
+    bool is_zero = true;          // z, in all rows
+    bool solved_exactly = false;  // what settle_exactly() says
+    void add(int row, const Measure& measure, long double row_size, double q, long double z);
+    /// Whether rounding hides if the numerator of a problem with q = 0 is 0.
+    [[nodiscard]] bool needs_exactness() const;
     [[nodiscard]] Certificate certificate() const;
   };
   /// Fills everything below for z. @return false if a number is not finite.
@@ -99,6 +110,10 @@ class Certifier {
   void find_bounds(const Problem& problem);
   [[nodiscard]] Measure measure_row(Index i) const;
   [[nodiscard]] Measure measure_cone(const Problem& problem, std::size_t cone) const;
+  void settle_exactly(const Problem& problem, const VectorRef& z, const std::vector<int>* island);
+  [[nodiscard]] bool solves_row(const Problem& problem, const VectorRef& z, Index i) const;
+  [[nodiscard]] bool solves_cone(const Problem& problem, const VectorRef& z,
+                                 std::size_t cone) const;
 
   std::vector<long double> z_, w_;            // w = M z + q
   std::vector<long double> body_p_, body_v_;  // of a factored M
@@ -109,7 +124,9 @@ class Certifier {
   std::vector<Bounds> bounds_;
   std::vector<Measure> measures_;
   FactoredMatrix::VisitWorkspace visit_;
-  std::vector<Total> totals_;  // of the islands
+  std::vector<Total> totals_;      // of the problem, or of its islands
+  std::vector<Interval> product_;  // M z without rounding, where q = 0
+  std::vector<int> limit_of_row_;  // in problem.limits, -1: none; where q = 0
 };
 
 /// Recomputes the certificate of z. Cost: one product with M in long double, one with |M| (of a

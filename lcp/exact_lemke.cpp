@@ -2,6 +2,8 @@
 #include <signorini/lcp/exact_solution.h>
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 
 namespace signorini::lcp {
 namespace {
@@ -28,7 +30,21 @@ std::string describe_ray(const ExactSolution& solution, bool is_exact) {
   return text;
 }
 
+std::string describe_restarts(const ExactSolution& solution) {
+  return solution.restarts == 0 ? std::string()
+                                : "; " + std::to_string(solution.restarts) +
+                                      " restarts from another complementary basis";
+}
+
 }  // namespace
+
+void ExactLemkeSettings::validate() const {
+  SolverSettings::validate();
+  if (restarts < 0) {
+    throw std::invalid_argument("ExactLemke settings: restarts: must be >= 0, got " +
+                                std::to_string(restarts));
+  }
+}
 
 ExactLemke::ExactLemke(const ExactLemkeSettings& settings) : settings_(settings) {
   settings_.validate();
@@ -41,7 +57,8 @@ std::string ExactLemke::refuses(const Problem& problem) const {
 
 Status ExactLemke::iterate(const Problem& problem, const Vector* /*warm_start*/,
                            const Deadline& deadline, Result& result) {
-  const ExactSolution solution = solve_exactly(problem, settings_.max_iterations, deadline);
+  const ExactSolution solution =
+      solve_exactly(problem, settings_.max_iterations, deadline, settings_.restarts);
   result.statistics.pivots = solution.pivots;
   const bool all_fit = round_to_doubles(solution.z, result.z);
   switch (solution.ending) {
@@ -49,13 +66,14 @@ Status ExactLemke::iterate(const Problem& problem, const Vector* /*warm_start*/,
     case ExactEnding::kTimeLimit: return Status::kTimeLimit;
     case ExactEnding::kRay: {
       const bool is_exact = scale_ray(solution.ray, result.ray);
-      result.detail = describe_ray(solution, is_exact);
+      result.detail = describe_ray(solution, is_exact) + describe_restarts(solution);
       return Status::kRayUnproven;
     }
     case ExactEnding::kSolution: break;
   }
-  result.detail = all_fit ? "exact solution, rounded to double"
-                          : "an exact solution exists, but is beyond the largest double";
+  result.detail = (all_fit ? "exact solution, rounded to double"
+                           : "an exact solution exists, but is beyond the largest double") +
+                  describe_restarts(solution);
   return Status::kNumericalBreakdown;
 }
 

@@ -4,10 +4,16 @@
 
 namespace signorini::lcp {
 
-/// Beyond SolverSettings: nothing. max_iterations counts pivots, -1: no limit (the lexicographic
-/// rule ends every path, but 2^n pivots are possible); time_limit is checked once a tableau row.
-/// tolerance only judges the rounded answer.
-struct ExactLemkeSettings : SolverSettings {};
+/// max_iterations counts pivots, -1: no limit (the lexicographic rule ends every path, but 2^n
+/// pivots are possible); time_limit is checked once a tableau row. tolerance only judges the
+/// rounded answer.
+struct ExactLemkeSettings : SolverSettings {
+  /// Paths from other complementary bases at most, after a ray that proves nothing, >= 0.
+  int restarts = 16;
+
+  /// @throws std::invalid_argument that names the setting, its value and the bound.
+  void validate() const;
+};
 
 /// Lemke's method over rational numbers, for small problems and as the oracle of the others: the
 /// exact solution of the LCP that the doubles state, rounded once to doubles. The method, its

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
+#include <utility>
 
 namespace signorini::lcp {
 namespace {
@@ -68,6 +70,20 @@ ExactEnding run(IntegerTableau& tableau, int max_pivots, const Deadline& deadlin
   return follow_path(tableau, tableau.complement(leaving), max_pivots, deadline, solution);
 }
 
+/// A random complementary basis, with a random cover. @return false if it is singular
+bool start_elsewhere(IntegerTableau& tableau, std::minstd_rand& random, const Deadline& deadline) {
+  constexpr int kLargestCover = 8;
+  constexpr unsigned long kShares = 7;  // rows are wanted with a chance of 1/8 .. 7/8
+  const auto share = 1 + random() / 16 % kShares;
+  std::vector<char> wanted(tableau.size());
+  std::vector<int> cover(tableau.size());
+  for (int i = 0; i < tableau.size(); ++i) {
+    wanted[i] = random() / 16 % (kShares + 1) < share ? 1 : 0;
+    cover[i] = 1 + static_cast<int>(random() / 16 % kLargestCover);
+  }
+  return tableau.start_from(wanted, cover, deadline);
+}
+
 /// x 2^-exponent with 1/2 <= |result| < 1, rounded to the 64 bits of a long double, to odd: the
 /// last bit is set if anything was cut off, so that the one rounding to double that follows is
 /// right.
@@ -96,14 +112,40 @@ long double leading_bits(const mpq_class& x, long& exponent) {
 
 }  // namespace
 
-ExactSolution solve_exactly(const Problem& problem, int max_pivots, const Deadline& deadline) {
+ExactSolution solve_exactly(const Problem& problem, int max_pivots, const Deadline& deadline,
+                            int restarts) {
   const ExactProblem exact = to_rational(problem);
   IntegerTableau tableau(exact);
   ExactSolution solution;
   solution.ending = run(tableau, max_pivots, deadline, solution);
   solution.z = tableau.values();
-  if (solution.ending == ExactEnding::kRay) {
-    solution.ray_proves_infeasible = proves_infeasible(exact, solution.ray);
+  if (solution.ending != ExactEnding::kRay) {
+    return solution;
+  }
+  solution.ray_proves_infeasible = proves_infeasible(exact, solution.ray);
+  std::minstd_rand random(1);
+  while (!solution.ray_proves_infeasible && solution.restarts < restarts && !deadline.passed()) {
+    ++solution.restarts;
+    ExactSolution again;
+    again.pivots = solution.pivots;
+    IntegerTableau other(exact);
+    if (!start_elsewhere(other, random, deadline)) {
+      continue;
+    }
+    again.ending = run(other, max_pivots, deadline, again);
+    again.restarts = solution.restarts;
+    solution.pivots = again.pivots;
+    if (again.ending == ExactEnding::kSolution) {
+      again.z = other.values();
+      return again;
+    }
+    if (again.ending == ExactEnding::kRay) {
+      again.ray_proves_infeasible = proves_infeasible(exact, again.ray);
+    }
+    if (again.ray_proves_infeasible) {
+      again.z = std::move(solution.z);
+      return again;
+    }
   }
   return solution;
 }

@@ -36,6 +36,9 @@ enum class ExactEnding {
   kTimeLimit,   ///< z is the last basic solution
 };
 
+/// How often solve_exactly() starts again.
+inline constexpr int kExactRestarts = 16;
+
 /// A result in rational numbers.
 struct ExactSolution {
   ExactEnding ending = ExactEnding::kPivotLimit;
@@ -44,7 +47,8 @@ struct ExactSolution {
   /// factor, >= 0), else empty.
   std::vector<mpq_class> ray;
   bool ray_proves_infeasible = false;  ///< M^T ray <= 0 and q.ray < 0: no feasible z exists
-  int pivots = 0;
+  int pivots = 0;                      ///< of all paths
+  int restarts = 0;                    ///< paths beyond the first
 };
 
 /// Lemke's method in exact arithmetic on w = M z + q + d z0, d = (1, ..., 1): complementary pivots
@@ -55,6 +59,12 @@ struct ExactSolution {
 /// copositive-plus (every positive semidefinite M is) or row sufficient; then the ray of a
 /// problem without a solution proves so. For other matrices a ray proves nothing by itself.
 ///
+/// A ray that does not prove infeasibility is not the end: the path is followed again from another
+/// complementary basis B_0 (drawn from a fixed pseudo-random sequence), with a cover B_0 d whose d
+/// are small integers, which is Lemke's method for the principal transform of the problem
+/// and solves some that it does not (bimatrix games), up to `restarts` times. The ray returned then
+/// is the first one, or the one that proves.
+///
 /// The tableau holds integers (rows multiplied by their common denominator) that stay minors of
 /// the data: Edmonds' integer pivoting with exact divisions, after Bareiss, Math. Comp. 22 (1968).
 /// Cost: O(n^2) products a pivot of integers as long as the basis determinant, at most about
@@ -64,10 +74,12 @@ struct ExactSolution {
 /// lexicographic rule of its section 4.9; we perturb by the identity.
 ///
 /// @param problem an LCP (is_lcp()) of finite numbers, shapes checked
-/// @param max_pivots -1: no limit
+/// @param max_pivots of all paths together, -1: no limit
+/// @param restarts paths beyond the first at most, >= 0
 [[nodiscard]] ExactSolution solve_exactly(
     const Problem& problem, int max_pivots = -1,
-    const Deadline& deadline = Deadline(std::numeric_limits<double>::infinity()));
+    const Deadline& deadline = Deadline(std::numeric_limits<double>::infinity()),
+    int restarts = kExactRestarts);
 
 /// The double nearest to x; +-infinity beyond the largest double. (mpq_class::get_d() truncates.)
 [[nodiscard]] double to_nearest_double(const mpq_class& x);

@@ -50,6 +50,31 @@ IntegerTableau::IntegerTableau(const ExactProblem& problem)
   for (int j = 0; j <= n_; ++j) {
     column_of_[n_ + j] = j;
   }
+  first_basic_ = basic_;
+}
+
+bool IntegerTableau::start_from(const std::vector<char>& wanted, const std::vector<int>& cover,
+                                const Deadline& deadline) {
+  for (int j = 0; j < n_; ++j) {
+    if (wanted[j] == 0) {
+      continue;
+    }
+    // z_j replaces any w_i that has to leave: a zero M_jj is no obstacle.
+    int row = 0;
+    while (row < n_ && (basic_[row] >= n_ || wanted[basic_[row]] == 0 ||
+                        sgn(entry(row, column_of_[n_ + j])) == 0)) {
+      ++row;
+    }
+    if (row == n_ || !exchange(row, n_ + j, deadline)) {
+      return false;
+    }
+  }
+  // The cover is what B_0 makes of the given one: the column of z0 is that one times -D.
+  for (int row = 0; row < n_; ++row) {
+    entry(row, column_of_[covering_variable()]) = -cover[row] * determinant_;
+  }
+  first_basic_ = basic_;
+  return true;
 }
 
 int IntegerTableau::first_leaving_row() const {
@@ -65,10 +90,11 @@ int IntegerTableau::first_leaving_row() const {
 }
 
 const mpz_class& IntegerTableau::perturbation(int row, int k) const {
-  if (column_of_[k] >= 0) {
-    return entry(row, column_of_[k]);
+  const int variable = first_basic_[k];
+  if (column_of_[variable] >= 0) {
+    return entry(row, column_of_[variable]);
   }
-  return row_of_[k] == row ? determinant_ : zero_;
+  return row_of_[variable] == row ? determinant_ : zero_;
 }
 
 int IntegerTableau::compare_ratios(int row, int other, int column) const {
@@ -131,7 +157,7 @@ void IntegerTableau::swap_variables(int row, int column) {
 
 bool IntegerTableau::exchange(int row, int entering, const Deadline& deadline) {
   const int column = column_of_[entering];
-  const bool is_negative = sgn(entry(row, column)) < 0;  // only where z0 enters
+  const bool is_negative = sgn(entry(row, column)) < 0;  // only on the way to the first basis
   if (is_negative) {
     for (int j = 0; j <= n_; ++j) {
       entry(row, j) = -entry(row, j);

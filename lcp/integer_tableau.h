@@ -17,11 +17,21 @@ namespace signorini::lcp {
 /// in the caller's units). D > 0 is the absolute basis determinant, T and b are minors of the data,
 /// so an exchange divides without remainder (Edmonds; Bareiss 1968).
 ///
+/// Every basis it starts from has the cover d = (positive integers) in its own terms, and the
+/// right-hand side is perturbed by (e, e^2, ..) in its own terms, so that the lexicographic rule
+/// holds.
+///
 /// Variables are numbered w_0 .. w_n-1, z_0 .. z_n-1, z0.
 class IntegerTableau {
  public:
   /// Starts at the basis of all w. Keeps no reference.
   explicit IntegerTableau(const ExactProblem& problem);
+  /// Makes the complementary basis with z_i for the wanted rows and w_i for the others the one to
+  /// start from, with this cover. @pre nothing was exchanged yet
+  /// @param cover n positive integers, by the rows of the new basis
+  /// @return false if that basis is singular, or the deadline passed: the tableau is then unusable
+  [[nodiscard]] bool start_from(const std::vector<char>& wanted, const std::vector<int>& cover,
+                                const Deadline& deadline);
 
   [[nodiscard]] int size() const { return n_; }
   [[nodiscard]] int covering_variable() const { return 2 * n_; }
@@ -33,7 +43,7 @@ class IntegerTableau {
   [[nodiscard]] bool is_basic(int variable) const { return row_of_[variable] >= 0; }
   [[nodiscard]] int row_of(int variable) const { return row_of_[variable]; }
 
-  /// The row that z0 replaces first: the lexicographically smallest of (q, I) / d; -1 if q >= 0.
+  /// The row that z0 replaces first: the lexicographically smallest of (b, I) / d; -1 if b >= 0.
   [[nodiscard]] int first_leaving_row() const;
   /// The row that leaves when a nonbasic variable grows: the smallest b_i / T_ij over T_ij > 0,
   /// that of z0 if it is among the smallest, else the lexicographically smallest of the perturbed
@@ -58,7 +68,8 @@ class IntegerTableau {
   mpz_class& entry(int row, int column) {
     return entries_[static_cast<std::size_t>(row) * (n_ + 1) + column];
   }
-  /// Coefficient of e^(k+1) in the perturbed b of a row: D (basis inverse)_(row, k).
+  /// Coefficient of e^(k+1) in the perturbed b of a row: D (B^-1 B_0)_(row, k), B_0 the basis that
+  /// was started from.
   [[nodiscard]] const mpz_class& perturbation(int row, int k) const;
   [[nodiscard]] int compare_ratios(int row, int other, int column) const;
   [[nodiscard]] bool is_lexicographically_less(int row, int other, int column) const;
@@ -71,6 +82,7 @@ class IntegerTableau {
   std::vector<mpz_class> right_;    // b
   mpz_class determinant_;           // D
   std::vector<int> basic_;          // the variable of each row
+  std::vector<int> first_basic_;    // that of each row in the basis that was started from
   std::vector<int> nonbasic_;       // the variable of each column
   std::vector<int> row_of_;         // of each variable, -1 if nonbasic
   std::vector<int> column_of_;      // of each variable, -1 if basic

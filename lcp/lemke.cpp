@@ -19,8 +19,12 @@ constexpr int kNone = -1;
 constexpr double kSmallPivot = 1e-10;       // of the column: only taken from a fresh factorisation
 constexpr double kRestartTolerance = 30.0;  // pivot tolerance grows by this a restart
 constexpr int kFirstOtherBasis = 2;         // the restart that takes another first basis
-constexpr int kBasisTrials = 20;            // random bases tried until one is regular
-constexpr double kGoodBasis = 1e-3;         // relative error of a solve with a usable first basis
+constexpr unsigned kLongPathSeed = 7919;    // other covers than those of the restarts
+constexpr std::int64_t kFirstPathPivots = 50;
+constexpr int kMostDoublings = 30;
+constexpr double kLeastShare = 1e-6;  // of the cover, of a row whose q is small
+constexpr int kBasisTrials = 20;      // random bases tried until one is regular
+constexpr double kGoodBasis = 1e-3;   // relative error of a solve with a usable first basis
 constexpr double kFreePivot = 1e-10;  // smaller ones pass for 0 in the columns of the free rows
 constexpr double kTightRay = 1e-10;   // M^T y <= 0 is met to this fraction of |M|^T y
 
@@ -50,6 +54,7 @@ void LemkeSettings::validate() const {
   require(cover_tolerance >= 0.0 && cover_tolerance <= 1e-3, "cover_tolerance", "in [0, 1e-3]",
           cover_tolerance);
   require(restarts >= 0, "restarts", ">= 0", restarts);
+  require(path_budget >= 0, "path_budget", ">= 0", path_budget);
   require(polish_rounds >= 0, "polish_rounds", ">= 0", polish_rounds);
 }
 
@@ -90,6 +95,7 @@ Status Lemke::solve_plain(const Problem& problem, const Vector* warm_start,
                           const Deadline& deadline, Result& result) {
   find_free_rows(problem);
   pivots_ = factorizations_ = refinements_ = restarts_ = other_bases_ = 0;
+  long_paths_ = long_path_pivots_ = 0;
   early_stop_ = false;
   polish_.reset_counts();
   best_.reset(problem);
@@ -126,12 +132,17 @@ Status Lemke::run(const Problem& problem, const Vector* warm_start, const Deadli
     }
   }
   RayVerdict verdict;
-  for (restarts_ = 0;; ++restarts_) {
+  while (true) {
+    const int before = pivots_;
     switch (pivot(restarts_, problem, deadline)) {
       case Ending::kSolved: return Status::kSolved;
       case Ending::kLimit: return Status::kIterationLimit;
       case Ending::kTime: return Status::kTimeLimit;
       case Ending::kRefused: break;
+      case Ending::kLong:
+        ++long_paths_;
+        long_path_pivots_ += pivots_ - before;
+        continue;
       case Ending::kRay: {
         Vector sharpened;
         const RayVerdict found = sharpen_ray(problem, ray_, sharpened);
@@ -148,6 +159,7 @@ Status Lemke::run(const Problem& problem, const Vector* warm_start, const Deadli
     if (restarts_ == settings_.restarts) {
       return result.ray.size() > 0 ? Status::kRayUnproven : Status::kNumericalBreakdown;
     }
+    ++restarts_;
   }
 }
 
@@ -161,6 +173,7 @@ Lemke::Ending Lemke::pivot(int attempt, const Problem& problem, const Deadline& 
   if (pivots_ >= pivot_limit()) {
     return Ending::kLimit;
   }
+  const std::int64_t give_up = pivots_ + path_limit();
   if (!enter_cover()) {
     return Ending::kRefused;
   }
@@ -174,6 +187,10 @@ Lemke::Ending Lemke::pivot(int attempt, const Problem& problem, const Deadline& 
     if (pivots_ >= pivot_limit()) {
       offer_current();
       return Ending::kLimit;
+    }
+    if (pivots_ >= give_up) {
+      offer_current();
+      return Ending::kLong;
     }
     if (basis_.updates() >= settings_.refactorisation_period && !refactor()) {
       return refuse();
@@ -219,11 +236,11 @@ Lemke::Ending Lemke::refuse() {
 
 /// The first basis, its x, and the cover vector.
 bool Lemke::start(int attempt) {
-  generator_.seed(static_cast<unsigned>(attempt) + 1U);
+  generator_.seed(static_cast<unsigned>(attempt) + 1U + kLongPathSeed * long_paths_);
   generator_.discard(8);
   pivot_tolerance_ =
       std::min(1e-2, settings_.pivot_tolerance * std::pow(kRestartTolerance, attempt));
-  if (attempt == 0 && start_from(start_)) {
+  if (attempt == 0 && long_paths_ == 0 && start_from(start_)) {
     return true;
   }
   start_ = free_basis_;
@@ -248,15 +265,32 @@ bool Lemke::start_from(const std::vector<char>& active) {
   if (!refactor()) {
     return false;
   }
-  ratios_.resize(scaled_.size());
-  for (int p = 0; p < scaled_.size(); ++p) {
-    ratios_[p] = is_free_[p] != 0 ? 0.0 : 1.0 + uniform();
-  }
+  draw_ratios();
   basis_.multiply(ratios_, cover_);
   // A nearly singular basis gives itself away by not reproducing its own cover vector.
   y_ = cover_;
   basis_.solve(y_);
   return (y_ - ratios_).cwiseAbs().maxCoeff() < kGoodBasis;
+}
+
+/// In [1, 2), or where paths were given up as large as the basic variables, times that.
+void Lemke::draw_ratios() {
+  const bool textbook = settings_.textbook_cover && restarts_ == 0 && long_paths_ == 0;
+  const double largest = x_.cwiseAbs().maxCoeff();
+  ratios_.resize(scaled_.size());
+  for (int p = 0; p < scaled_.size(); ++p) {
+    const double size =
+        long_paths_ > 0 && largest > 0.0 ? std::max(std::abs(x_[p]) / largest, kLeastShare) : 1.0;
+    ratios_[p] = is_free_[p] != 0 ? 0.0 : textbook ? 1.0 : size * (1.0 + uniform());
+  }
+}
+
+/// Pivots after which a path is given up.
+std::int64_t Lemke::path_limit() const {
+  const std::int64_t first = kFirstPathPivots + static_cast<std::int64_t>(settings_.path_budget) *
+                                                    static_cast<std::int64_t>(scaled_.size());
+  return settings_.path_budget == 0 ? std::numeric_limits<int>::max()
+                                    : first << std::min(long_paths_, kMostDoublings);
 }
 
 /// In [0, 1), the same on every machine.
@@ -535,6 +569,11 @@ void Lemke::describe(Result& result) const {
   if (restarts_ > 0) {
     say(std::to_string(restarts_) + " restarts with another cover vector" +
         (other_bases_ > 0 ? ", " + std::to_string(other_bases_) + " from another basis" : ""));
+  }
+  if (long_paths_ > 0) {
+    say(std::to_string(long_paths_) + " long path" + (long_paths_ > 1 ? "s" : "") +
+        " given up after " + std::to_string(long_path_pivots_) +
+        " pivots for another random cover");
   }
   if (early_stop_) {
     say("stopped at z_0 <= cover_tolerance and solved at z_0 = 0");

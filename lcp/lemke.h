@@ -7,6 +7,7 @@
 #include <signorini/lcp/scaled_lcp.h>
 #include <signorini/lcp/solver.h>
 
+#include <cstdint>
 #include <random>
 #include <vector>
 
@@ -33,6 +34,13 @@ struct LemkeSettings : SolverSettings {
   /// by the ray's verdict, >= 0: with another cover vector and a larger pivot tolerance, from the
   /// second time on also from another complementary basis.
   int restarts = 16;
+  /// A path longer than 50 + path_budget n pivots is given up for one from another cover vector
+  /// (exponential examples), and twice as many are allowed each time, >= 0; 0: paths are never
+  /// given up. Contact problems need up to 5 n.
+  int path_budget = 10;
+  /// The cover of the first path is the book's (1, .., 1), scaled like the problem, instead of the
+  /// pseudo-random one: for comparison, equal rows tie then.
+  bool textbook_cover = false;
   /// Rounds of the final active-set polish, >= 0. With 0 the result is plain Lemke's.
   int polish_rounds = 20;
 
@@ -61,6 +69,13 @@ struct LemkeSettings : SolverSettings {
 ///   with another d, later from another complementary basis B_0 with the cover column B_0 d (which
 ///   is Lemke's method for the principal transform of the problem, and solves some that it does
 ///   not, bimatrix games for example). Both are named in Result::detail.
+///
+/// **Exponential examples.** The path of a P-matrix can have 2^n - 1 pivots (Murty 1978), for a
+/// cover and a q made for each other. A cover drawn at random makes that improbable, so the first
+/// one is pseudo-random, and a path that outgrows path_budget is given up for another random cover,
+/// the share of each row now of the size of its own q. The budget doubles each time, so that no
+/// finite path is given up for ever: up to max_iterations the method stays complete. Result::detail
+/// says how many paths were given up and after how many pivots.
 ///
 /// **Mixed problems.** A free row (w_i = 0) has its z_i in every basis, where it blocks nothing;
 /// the first basis is completed by other z_i where M on the free rows is singular (circuits).
@@ -91,7 +106,8 @@ class Lemke : public Solver {
 
  private:
   /// How one run of the pivoting ended. kRefused: numerical trouble, or the certificate refused.
-  enum class Ending { kSolved, kRefused, kRay, kLimit, kTime };
+  /// kLong: the path outgrew its budget.
+  enum class Ending { kSolved, kRefused, kLong, kRay, kLimit, kTime };
 
   Status solve_plain(const Problem& problem, const Vector* warm_start, const Deadline& deadline,
                      Result& result);
@@ -105,6 +121,8 @@ class Lemke : public Solver {
   Ending refuse();
   bool start(int attempt);
   bool start_from(const std::vector<char>& active);
+  void draw_ratios();
+  [[nodiscard]] std::int64_t path_limit() const;
   double uniform();
   bool enter_cover();
   bool refactor();
@@ -155,6 +173,8 @@ class Lemke : public Solver {
   int refinements_ = 0;
   int restarts_ = 0;
   int other_bases_ = 0;
+  int long_paths_ = 0;        // given up
+  int long_path_pivots_ = 0;  // spent on them
   bool early_stop_ = false;
 };
 

@@ -1,3 +1,4 @@
+#include <signorini/lcp/enclosed_product.h>
 #include <signorini/lcp/exact_sum.h>
 #include <signorini/lcp/ray.h>
 
@@ -8,84 +9,17 @@
 namespace signorini::lcp {
 namespace {
 
-/// max_i of what is added, from above, and 0 if none of them is positive. NaN stays NaN.
-class LargestAbove {
- public:
-  void add(const ExactSum& sum) {
-    if (sum.sign() > 0) {
-      add(sum.enclosure());
+/// max_i (M^T y)_i+, rounded up; 0 only if M^T y <= 0 exactly. NaN stays NaN.
+long double growth(const MatrixForm& M, const VectorRef& y) {
+  std::vector<Interval> product;
+  enclose_transposed_product(M, y, product);
+  long double largest = 0.0L;
+  for (const Interval& entry : product) {
+    if (!(entry.upper <= largest)) {
+      largest = entry.upper;
     }
   }
-  void add(const Interval& value) {
-    if (!(value.upper <= largest_)) {
-      largest_ = value.upper;
-    }
-  }
-  [[nodiscard]] long double value() const { return largest_; }
-
- private:
-  long double largest_ = 0.0L;
-};
-
-/// max_i (M^T y)_i+, rounded up; 0 only if M^T y <= 0 exactly.
-long double growth(const Matrix& M, const VectorRef& y) {
-  LargestAbove largest;
-  for (Index j = 0; j < M.cols(); ++j) {
-    ExactSum sum;
-    for (Index i = 0; i < M.rows(); ++i) {
-      sum.add_product(M(i, j), y[i]);
-    }
-    largest.add(sum);
-  }
-  return largest.value();
-}
-
-long double growth(const SparseMatrix& M, const VectorRef& y) {
-  LargestAbove largest;
-  for (Index j = 0; j < M.outerSize(); ++j) {
-    ExactSum sum;
-    for (SparseMatrix::InnerIterator it(M, j); it; ++it) {
-      sum.add_product(it.value(), y[it.row()]);
-    }
-    largest.add(sum);
-  }
-  return largest.value();
-}
-
-/// p = J^T y, every sum exact, then enclosed.
-std::vector<Interval> enclose_transpose_times(const FactoredMatrix& A, const VectorRef& y) {
-  std::vector<ExactSum> sums(A.degrees_of_freedom());
-  for (int i = 0; i < A.rows(); ++i) {
-    for (const FactoredMatrix::Entry& entry : A.entries(i)) {
-      for (int k = 0; k < A.mass.dimension(entry.block); ++k) {
-        sums[A.mass.offset(entry.block) + k].add_product(A.values(entry)[k], y[i]);
-      }
-    }
-  }
-  std::vector<Interval> p(sums.size());
-  for (std::size_t k = 0; k < sums.size(); ++k) {
-    p[k] = sums[k].enclosure();
-  }
-  return p;
-}
-
-long double growth(const FactoredMatrix& A, const VectorRef& y) {
-  const std::vector<Interval> p = enclose_transpose_times(A, y);
-  std::vector<Interval> v(p.size());
-  for (int b = 0; b < A.mass.block_count(); ++b) {
-    A.mass.apply_inverse(b, p.data() + A.mass.offset(b), v.data() + A.mass.offset(b));
-  }
-  LargestAbove largest;
-  for (int i = 0; i < A.rows(); ++i) {
-    Interval sum = A.compliance(i) * Interval(y[i]);
-    for (const FactoredMatrix::Entry& entry : A.entries(i)) {
-      for (int k = 0; k < A.mass.dimension(entry.block); ++k) {
-        sum += A.values(entry)[k] * v[A.mass.offset(entry.block) + k];
-      }
-    }
-    largest.add(sum);
-  }
-  return largest.value();
+  return largest;
 }
 
 ExactSum dot(const Vector& a, const VectorRef& b) {
@@ -117,7 +51,7 @@ RayVerdict judge_ray(const Problem& problem, const VectorRef& y) {
   if (q_dot_y.sign() >= 0) {
     return {};
   }
-  const long double most = std::visit([&y](const auto& M) { return growth(M, y); }, problem.M);
+  const long double most = growth(problem.M, y);
   if (most == 0.0L) {
     return {Status::kInfeasible, std::numeric_limits<double>::infinity()};
   }

@@ -28,6 +28,9 @@ struct RayVerdict {
 /// have A y <= 0, for then y.A y = p.W p + y.c y > 0); the W judged is the one that
 /// BlockMass::apply_inverse() applies.
 ///
+/// So every ray that a solver ends on is judged, whatever n and whichever solver it was
+/// (Solver::solve()).
+///
 /// Cost: about ten products with M^T.
 /// @param problem shapes checked (check_shapes()). Anything that is not an LCP (is_lcp()), or holds
 /// a value that is not finite, is unproven.

@@ -42,8 +42,13 @@ struct Result {
   Vector z;            ///< n: the answer, or the best iterate, or NaN (see Status)
   Vector w;            ///< n: M z + q, recomputed from the caller's data
   Certificate certificate;  ///< of z; recomputed from the caller's data
-  Vector ray;               ///< y of RayVerdict if the solve ended on a ray, else empty
-  double ray_bound = 0.0;   ///< Z: every feasible z has |z|_1 >= Z. 0: nothing is known
+  /// With SolverSettings::certify_islands the certificate of every island by itself, measured
+  /// against its own |q|_inf, which the q of another island cannot hide; else empty. Islands are
+  /// numbered by their first rows (Islands).
+  std::vector<Certificate> island_certificates;
+  std::vector<int> island_of_row;  ///< n, or empty as island_certificates
+  Vector ray;                      ///< y of RayVerdict if the solve ended on a ray, else empty
+  double ray_bound = 0.0;          ///< Z: every feasible z has |z|_1 >= Z. 0: nothing is known
   Statistics statistics;
   std::vector<Attempt> attempts;  ///< of a solver that tries others, in order; else empty
 };

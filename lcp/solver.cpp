@@ -47,6 +47,12 @@ void Solver::certify_result(const Problem& problem, Status ending, Result& resul
   }
 }
 
+void Solver::certify_islands(const Problem& problem, Result& result) {
+  islands_.find(problem);
+  certifier_.certify_islands(problem, result.z, islands_, result.island_certificates);
+  result.island_of_row = islands_.island;
+}
+
 void Solver::record(const Problem& problem, const Vector* warm_start, Result& result) const {
   std::string said;
   try {
@@ -76,6 +82,8 @@ void Solver::solve(const Problem& problem, Result& result, const Vector* warm_st
   result.z.setConstant(n, Certificate::kNaN);
   result.w.setConstant(n, Certificate::kNaN);
   result.certificate = {};
+  result.island_certificates.clear();
+  result.island_of_row.clear();
   result.ray.resize(0);
   result.ray_bound = 0.0;
   result.statistics = {};
@@ -94,6 +102,9 @@ void Solver::solve(const Problem& problem, Result& result, const Vector* warm_st
       result.detail += "the iterate was not finite: z = 0 instead";
     }
     certify_result(problem, is_solved(ending) ? Status::kNumericalBreakdown : ending, result);
+    if (settings().certify_islands) {
+      certify_islands(problem, result);
+    }
     if (!start_is_finite) {
       result.detail += result.detail.empty() ? "" : "; ";
       result.detail += "warm start not finite, not used";

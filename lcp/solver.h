@@ -25,6 +25,9 @@ struct SolverSettings {
   /// Is told of every solve; null: nobody. Not owned: it must outlive the solver, and be safe for
   /// threads if solvers of several threads share it.
   SolveRecorder* recorder = nullptr;
+  /// Fills Result::island_certificates. Doubles the cost of certifying; the status is that of the
+  /// whole problem either way. With it a repeated solve allocates nothing more either.
+  bool certify_islands = false;
 
   /// @throws std::invalid_argument that names the setting, its value and the bound.
   void validate() const;
@@ -78,8 +81,10 @@ class Solver {
 
  private:
   void record(const Problem& problem, const Vector* warm_start, Result& result) const;
+  void certify_islands(const Problem& problem, Result& result);
 
   Certifier certifier_;
+  Islands islands_;
 };
 
 /// Names that make_solver() knows, in the order to show them.

@@ -1,6 +1,7 @@
 #include <signorini/lcp/alart_curnier.h>
 #include <signorini/lcp/apgd.h>
 #include <signorini/lcp/auto_solver.h>
+#include <signorini/lcp/block_pivoting.h>
 #include <signorini/lcp/dantzig.h>
 #include <signorini/lcp/interior_point.h>
 #include <signorini/lcp/lemke.h>
@@ -50,6 +51,7 @@ constexpr std::array kEntries = {
     Entry{"interior-point", &make<InteriorPoint, InteriorPointSettings>},
     Entry{"apgd", &make<Apgd, ApgdSettings>},
     Entry{"dantzig", &make<Dantzig, DantzigSettings>},
+    Entry{"block-pivoting", &make<BlockPivoting, BlockPivotingSettings>},
     Entry{"alart-curnier", &make<AlartCurnier, AlartCurnierSettings>},
     Entry{"nsgs", &make<Nsgs, NsgsSettings>},
     Entry{"pgs", &make<Pgs, PgsSettings>},

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <functional>
 #include <limits>
+#include <numeric>
+#include <vector>
 
 namespace signorini::lcp {
 namespace {
@@ -40,6 +43,39 @@ std::string ray_text(const Result& result) {
       return fmt::format("every feasible z has |z|_1 >= Z = {:.6g}", result.ray_bound);
     default: return "proves nothing about this matrix";
   }
+}
+
+/// The islands, worst first, one line each; no more than kMostIslands.
+std::string islands_text(const Result& result, double tolerance) {
+  constexpr std::size_t kMostIslands = 20;
+  const std::vector<Certificate>& each = result.island_certificates;
+  std::vector<int> rows(each.size());
+  for (const int island : result.island_of_row) {
+    ++rows[island];
+  }
+  std::vector<std::size_t> order(each.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater<>(),
+                           [&](std::size_t k) { return each[k].unit_free_residual; });
+  const auto verdict = [tolerance](const Certificate& certificate) {
+    return judge(certificate, tolerance, Status::kStalled);
+  };
+  const auto solved =
+      std::ranges::count_if(each, [&](const Certificate& c) { return is_solved(verdict(c)); });
+  std::string text =
+      fmt::format("islands     {}, {} of them solved by themselves\n", each.size(), solved);
+  text += fmt::format("            {:>7}{:>8}{:>11}{:>11}{:>11}{:>7}  verdict\n", "island", "rows",
+                      "unit-free", "floor", "natural", "worst");
+  for (std::size_t k = 0; k < std::min(order.size(), kMostIslands); ++k) {
+    const Certificate& c = each[order[k]];
+    text += fmt::format("            {:>7}{:>8}{:>11.1e}{:>11.1e}{:>11.1e}{:>7}  {}\n", order[k],
+                        rows[order[k]], c.unit_free_residual, c.rounding_floor, c.natural_residual,
+                        c.worst_row, is_solved(verdict(c)) ? to_string(verdict(c)) : "not solved");
+  }
+  if (order.size() > kMostIslands) {
+    text += fmt::format("            and {} with smaller residuals\n", order.size() - kMostIslands);
+  }
+  return text;
 }
 
 std::string count_text(Index count, const std::string& what) {
@@ -106,6 +142,9 @@ std::string result_text(const Result& result, double tolerance) {
                       c.complementarity);
   if (!std::isnan(c.cone_violation)) {
     text += fmt::format("            cone violation {:.2e}\n", c.cone_violation);
+  }
+  if (!result.island_of_row.empty()) {
+    text += islands_text(result, tolerance);
   }
   if (result.ray.size() > 0) {
     text += fmt::format("ray         {}\n", ray_text(result));

@@ -52,7 +52,21 @@ Json attempt_object(const Attempt& attempt) {
           {"detail", attempt.detail}};
 }
 
-Json result_object(const Result& result) {
+/// Every island: its rows, whether it is solved by itself, its certificate.
+Json islands_array(const Result& result, double tolerance) {
+  Json array = Json::array();
+  for (const Certificate& certificate : result.island_certificates) {
+    array.push_back({{"solved", is_solved(judge(certificate, tolerance, Status::kStalled))},
+                     {"rows", Json::array()},
+                     {"certificate", certificate_object(certificate)}});
+  }
+  for (std::size_t i = 0; i < result.island_of_row.size(); ++i) {
+    array[static_cast<std::size_t>(result.island_of_row[i])]["rows"].push_back(i);
+  }
+  return array;
+}
+
+Json result_object(const Result& result, double tolerance) {
   Json json = {{"status", to_string(result.status)},
                {"solved", is_solved(result.status)},
                {"solver", result.solver},
@@ -64,6 +78,9 @@ Json result_object(const Result& result) {
                {"solve_seconds", number(result.statistics.solve_seconds)},
                {"certificate", certificate_object(result.certificate)},
                {"ray_bound", number(result.ray_bound)}};
+  if (!result.island_of_row.empty()) {
+    json["islands"] = islands_array(result, tolerance);
+  }
   if (!result.attempts.empty()) {
     json["attempts"] = Json::array();
     for (const Attempt& attempt : result.attempts) {
@@ -79,10 +96,10 @@ void add_law(std::string_view friction_law, Json& json) {
   }
 }
 
-Json array_of(std::span<const Result> results) {
+Json array_of(std::span<const Result> results, double tolerance) {
   Json array = Json::array();
   for (const Result& result : results) {
-    array.push_back(result_object(result));
+    array.push_back(result_object(result, tolerance));
   }
   return array;
 }
@@ -106,16 +123,18 @@ void write_vector(const std::filesystem::path& file, const Vector& vector) {
   write_whole_file(file, vector_text(vector));
 }
 
-std::string result_json(const Result& result, std::string_view friction_law, int indent) {
-  Json json = result_object(result);
+std::string result_json(const Result& result, double tolerance, std::string_view friction_law,
+                        int indent) {
+  Json json = result_object(result, tolerance);
   add_law(friction_law, json);
   return text_of(json, indent);
 }
 
-std::string results_json(std::span<const Result> results, std::span<const std::string> left_out,
-                         std::string_view friction_law, int indent) {
+std::string results_json(std::span<const Result> results, double tolerance,
+                         std::span<const std::string> left_out, std::string_view friction_law,
+                         int indent) {
   Json json;
-  json["results"] = array_of(results);
+  json["results"] = array_of(results, tolerance);
   json["left_out"] = std::vector<std::string>(left_out.begin(), left_out.end());
   add_law(friction_law, json);
   return text_of(json, indent);
@@ -128,7 +147,7 @@ std::string record_json(const SolveRecord& record) {
                       {{"tolerance", number(settings.tolerance)},
                        {"max_iterations", counter(settings.max_iterations)},
                        {"time_limit", number(settings.time_limit)}}},
-                     {"result", result_object(record.result)}};
+                     {"result", result_object(record.result, settings.tolerance)}};
   return text_of(json, 2);
 }
 

@@ -45,6 +45,8 @@ constexpr const char* kFooter =
     "a line) takes another, --cold none.\n"
     "--output gets z, one number a line, written whole or not at all: of an unsolved problem the\n"
     "best iterate, and the program says so.\n"
+    "--islands adds a certificate for every set of rows that nothing connects, measured against\n"
+    "its own q, which a larger q elsewhere cannot hide.\n"
     "--dump DIR[:OPTION,...], or the environment variable SIGNORINI_DUMP, writes every solve for "
     "a\n"
     "replay; options: all (default), unsolved; folder (default), hdf5, both; max=N.\n"
@@ -212,7 +214,8 @@ std::string_view law_text(const Problem& problem) {
 int run_all(const Options& options, const Task& task) {
   const AllResults all = solve_all(task, options.settings);
   if (options.json) {
-    print(results_json(all.results, all.left_out, law_text(task.problem())));
+    print(results_json(all.results, options.settings.tolerance, all.left_out,
+                       law_text(task.problem())));
   } else {
     print(results_table(all.results));
     for (const std::string& line : all.left_out) {
@@ -234,7 +237,7 @@ int run_one(const Options& options, const Task& task) {
   const Result result =
       solve_with(options.solver, task.problem(), options.settings, task.warm_start());
   if (options.json) {
-    print(result_json(result, law_text(task.problem())));
+    print(result_json(result, options.settings.tolerance, law_text(task.problem())));
   } else {
     print(result_text(result, options.settings.tolerance));
   }
@@ -361,6 +364,8 @@ int main(int argc, char** argv) {
                  "of friction cones: coulomb or associated (default: the problem's own)");
   app.add_option("--warm-start", options.warm_start, "file to start from, one number a line");
   app.add_flag("--cold", options.cold, "do not use the warm start that was recorded");
+  app.add_flag("--islands", options.settings.certify_islands,
+               "certify every island (rows that nothing connects) by itself, too");
   app.add_option("--output", options.output, "file for z");
   app.add_option("--dump", options.dump, "write every solve: DIR[:OPTION,...]");
   app.add_flag("--json", options.json, "print the result as JSON");

@@ -66,6 +66,15 @@ TEST(ClaimJudge, GoesToRationalsWhereRoundingHidesTheAnswer) {
   EXPECT_TRUE(verdict.by_rationals);
 }
 
+TEST(ClaimJudge, LetsNothingPassWhereQIsZero) {
+  // w_0 = 2^-40, which a sum in long double loses.
+  Matrix M = Matrix::Zero(3, 3);
+  M.row(0) = Eigen::RowVector3d(1e20, 0x1p-40, -1e20);
+  EXPECT_NE(wrong(problem_of(M, Vector::Zero(3)), Vector::Ones(3)), "");
+  M(0, 1) = 0.0;
+  EXPECT_EQ(wrong(problem_of(M, Vector::Zero(3)), Vector::Ones(3)), "");
+}
+
 TEST(ClaimJudge, KnowsBoundsFreeRowsAndCoupledLimits) {
   Problem boxed = problem_of(Matrix{{1.0}}, Vector::Constant(1, -3.0));
   boxed.upper = Vector::Constant(1, 2.0);
@@ -257,6 +266,9 @@ TEST(FuzzStudy, WhatWasFoundStaysMended) {
       {"dantzig", 78973, "a dependent row moved between far bounds without end"},
       {"dantzig", 84379, "the same"},
       {"dantzig", 99608, "the same, n = 4"},
+      {"pgs", 83624, "q = 0 and a w that long double loses, called solved"},
+      {"symmetric-pgs", 83624, "the same"},
+      {"nncg", 83624, "the same"},
   };
   for (const Found& found : kFound) {
     std::ostringstream out;

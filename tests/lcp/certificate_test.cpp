@@ -264,6 +264,82 @@ TEST(Certificate, OfZeroQIsZeroForZeroAndInfiniteForAnythingWrong) {
   EXPECT_EQ(certify(problem, vector({1e-30, 0})).unit_free_residual, kInfinity);
 }
 
+/// The residual of a problem with q = 0.
+double homogeneous(const MatrixForm& M, const Vector& z) {
+  Problem problem;
+  problem.M = M;
+  problem.q = Vector::Zero(z.size());
+  return certify(problem, z).unit_free_residual;
+}
+
+TEST(Certificate, OfZeroQIsDecidedWithoutRounding) {
+  const Matrix walls{{1.5, -1.5}, {-1.5, 1.5}};
+  EXPECT_EQ(homogeneous(walls, vector({0.1, 0.1})), 0.0);
+  EXPECT_EQ(homogeneous(walls, vector({0.1, 0.1 + 0x1p-56})), kInfinity);
+  // w_0 = (1e20 + 2^-40) - 1e20 is 0 in long double.
+  Matrix hidden = Matrix::Zero(3, 3);
+  hidden.row(0) = Eigen::RowVector3d(1e20, 0x1p-40, -1e20);
+  EXPECT_EQ(homogeneous(hidden, vector({1, 1, 1})), kInfinity);
+  EXPECT_EQ(homogeneous(SparseMatrix(hidden.sparseView()), vector({1, 1, 1})), kInfinity);
+  hidden(0, 1) = 0.0;
+  EXPECT_EQ(homogeneous(hidden, vector({1, 1, 1})), 0.0);
+  EXPECT_EQ(homogeneous(SparseMatrix(hidden.sparseView()), vector({1, 1, 1})), 0.0);
+  FactoredMatrix factored;
+  factored.mass.add_mass(Matrix{{3.0, 1.0}, {1.0, 7.0}});
+  for (const double side : {1.0, -1.0}) {
+    factored.add_row();
+    factored.add_entry(0, vector({0.3 * side, 0.7 * side}));
+  }
+  EXPECT_EQ(homogeneous(factored, vector({5, 5})), 0.0);
+  EXPECT_EQ(homogeneous(factored, vector({5, 5 + 0x1p-50})), kInfinity);
+}
+
+TEST(Certificate, OfZeroQKnowsBoundsAndLimits) {
+  Problem problem = lcp(Matrix{{2.0, 0.0}, {0.0, 0.0}}, vector({0, 0}));
+  const auto residual = [&problem](double a, double b) {
+    return certify(problem, vector({a, b})).unit_free_residual;
+  };
+  problem.lower = vector({1, -kInfinity});
+  EXPECT_EQ(residual(1.0, 3.0), 0.0) << "w = (2, 0)";
+  EXPECT_EQ(residual(1.0 + kEpsilon, 3.0), kInfinity);
+  problem.lower = vector({-4, 0});
+  problem.upper = vector({-0.5, 1});
+  EXPECT_EQ(residual(-0.5, 0.25), 0.0) << "w = (-1, 0)";
+  EXPECT_EQ(residual(-1.0, 0.25), kInfinity);
+  EXPECT_EQ(residual(-0.5, 1.0 + kEpsilon), kInfinity) << "out of its bounds";
+  problem = lcp(Matrix{{0.0, 0.0}, {0.0, 1.0}}, vector({0, 0}));
+  problem.limits = {{.row = 1, .normal_row = 0, .coefficient = 0.5}};
+  EXPECT_EQ(residual(3.0, 0.0), 0.0);
+  EXPECT_EQ(residual(3.0, 1.5), kInfinity) << "w_1 > 0 at the upper limit";
+  EXPECT_EQ(residual(3.0, -1.5), kInfinity) << "w_1 < 0 at the lower limit";
+  problem.M = Matrix{{0.0, 0.0}, {0.0, -1.0}};
+  EXPECT_EQ(residual(3.0, 1.5), 0.0) << "w_1 < 0 at the upper limit";
+  problem.limits[0].coefficient = 0.1;
+  EXPECT_EQ(residual(3.0, 0.1 * 3.0), kInfinity) << "0.1 * 3 is rounded";
+}
+
+TEST(Certificate, OfZeroQKnowsCones) {
+  Problem problem = lcp(Matrix::Zero(3, 3), Vector::Zero(3));
+  problem.cones = {{0, 3, 0.5}};
+  const auto residual = [&problem](const Vector& z) {
+    return certify(problem, z).unit_free_residual;
+  };
+  EXPECT_EQ(residual(vector({2, 0.5, 0.5})), 0.0);
+  EXPECT_EQ(residual(vector({2, 0.0, 1.5})), kInfinity);
+  EXPECT_EQ(residual(vector({2, 0.0, 1.0})), kInfinity) << "its boundary is left open";
+  // A separate row pushes the contact, whose impulse is 0: apart, together, sideways.
+  problem = lcp(Matrix::Zero(4, 4), Vector::Zero(4));
+  problem.cones = {{0, 3, 0.5}};
+  problem.M = Matrix{{1, 0, 0, 1}, {0, 1, 0, 4}, {0, 0, 1, 0}, {0, 0, 0, 0}};
+  EXPECT_EQ(residual(vector({0, 0, 0, 1})), 0.0) << "Coulomb: apart, however it slides";
+  problem.friction_law = FrictionLaw::kAssociated;
+  EXPECT_EQ(residual(vector({0, 0, 0, 1})), kInfinity) << "w_N < mu |w_T|";
+  std::get<Matrix>(problem.M)(1, 3) = 1.0;
+  EXPECT_EQ(residual(vector({0, 0, 0, 1})), 0.0);
+  std::get<Matrix>(problem.M)(0, 3) = -1.0;
+  EXPECT_EQ(residual(vector({0, 0, 0, 1})), kInfinity) << "together";
+}
+
 TEST(Certificate, OfNoRowsIsSolved) {
   const Certificate c = certify(lcp(Matrix(0, 0), Vector(0)), Vector(0));
   EXPECT_EQ(judge(c, kTolerance, Status::kStalled), Status::kSolved);

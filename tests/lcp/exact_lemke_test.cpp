@@ -312,6 +312,28 @@ TEST(ExactLemke, RayThatProvesNothingIsUnproven) {
   EXPECT_NE(result.detail.find("proves nothing"), std::string::npos) << result.detail;
 }
 
+/// lcp_CPS_3 of the collection: a bimatrix game (nonnegative M with zero diagonal) on which Lemke
+/// from the cover (1, .., 1) ends on its first ray, which proves nothing.
+TEST(SolveExactly, StartsAgainFromAnotherBasisAfterARayThatProvesNothing) {
+  const Problem game = dense(Matrix{{0, 0, 10, 20}, {0, 0, 30, 15}, {10, 20, 0, 0}, {30, 15, 0, 0}},
+                             vector({-1.0, -1.0, -1.0, -1.0}));
+  const Deadline never(std::numeric_limits<double>::infinity());
+  const ExactSolution once = solve_exactly(game, -1, never, 0);
+  EXPECT_EQ(once.ending, ExactEnding::kRay);
+  EXPECT_FALSE(once.ray_proves_infeasible);
+  const ExactSolution solution = solve_exactly(game);
+  EXPECT_EQ(solution.ending, ExactEnding::kSolution);
+  EXPECT_EQ(violation(to_rational(game), solution.z), "");
+  EXPECT_GE(solution.restarts, 1);
+  EXPECT_LE(solution.restarts, kExactRestarts);
+  ExactLemke solver;
+  Result result;
+  solver.solve(game, result);
+  EXPECT_EQ(result.status, Status::kSolved);
+  EXPECT_NE(result.detail.find("restarts from another complementary basis"), std::string::npos);
+  EXPECT_LE(solve_exactly(game, once.pivots, never).pivots, once.pivots) << "the limit is of all";
+}
+
 TEST(ExactLemke, RayWhoseMultiplesAreNotDoublesIsNotClaimed) {
   // Skew, so positive semidefinite; the null vector is (b d, 0, a d, 0, a c), without a common
   // factor: 106 bits.

@@ -396,6 +396,45 @@ TEST(Lemke, ExponentialExamplesTakeFewPivots) {
   }
 }
 
+/// Lower unit triangular, 2 below the diagonal, q_i = -(2^n + .. + 2^(n-i)): with the cover
+/// (1, .., 1) the lexicographic path takes all 2^n - 1 complementary bases (Murty 1978).
+TEST(Lemke, AnExponentialPathIsGivenUpForAnotherCover) {
+  for (const int n : {10, 15, 20}) {
+    Problem problem = lcp(std::get<Matrix>(murty(n).M).transpose(), Vector(n));
+    double sum = 0.0;
+    for (int i = 0; i < n; ++i) {
+      problem.q[i] = sum -= std::ldexp(1.0, n - i);
+    }
+    const int budget = 50 + 10 * n;
+    LemkeSettings textbook;
+    textbook.textbook_cover = true;
+    const Result result = solve(problem, textbook);
+    EXPECT_EQ(result.status, Status::kSolved) << n << ": " << result.detail;
+    EXPECT_LE(result.certificate.unit_free_residual, 1e-12);
+    EXPECT_GT(result.statistics.pivots, budget) << "the first path is given up";
+    EXPECT_LE(result.statistics.pivots, 4 * budget) << n;
+    EXPECT_NE(result.detail.find("given up after " + std::to_string(budget)), std::string::npos)
+        << result.detail;
+    EXPECT_LE(solve(problem).statistics.pivots, budget) << "the random cover needs no second try";
+    if (n == 10) {
+      textbook.path_budget = 0;
+      const Result whole = solve(problem, textbook);
+      EXPECT_GT(whole.statistics.pivots, 1000) << "2^10 bases";
+      EXPECT_EQ(whole.detail.find("given up"), std::string::npos);
+    }
+  }
+}
+
+/// The budget doubles: a path that needs more than the first one is not given up for ever.
+TEST(Lemke, SmallBudgetsOnlyCostPivots) {
+  LemkeSettings settings;
+  settings.path_budget = 1;
+  for (const int n : {60, 120}) {
+    const Problem problem = fathi(n);
+    EXPECT_EQ(solve(problem, settings).status, solve(problem).status) << n;
+  }
+}
+
 Matrix random_semidefinite(int n, std::mt19937& random) {
   std::normal_distribution<double> normal;
   const Matrix J = Matrix::NullaryExpr(n, (n + 1) / 2, [&] { return normal(random); });

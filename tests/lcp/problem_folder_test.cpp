@@ -673,7 +673,7 @@ TEST(ResultJson, SaysNullWhereThereIsNoNumberAndInfAsText) {
   result.statistics.pivots = 7;
   result.ray_bound = kInfinity;
   result.certificate.natural_residual = 0.1;
-  const auto json = nlohmann::json::parse(result_json(result));
+  const auto json = nlohmann::json::parse(result_json(result, 1e-8));
   EXPECT_EQ(json["status"], "infeasible");
   EXPECT_EQ(json["solved"], false);
   EXPECT_EQ(json["solver"], "lemke");
@@ -685,7 +685,7 @@ TEST(ResultJson, SaysNullWhereThereIsNoNumberAndInfAsText) {
   EXPECT_FALSE(json.contains("attempts"));
   EXPECT_FALSE(json.contains("friction_law"));
   result.attempts.emplace_back().solver = "pgs";
-  const auto with_attempts = nlohmann::json::parse(result_json(result, "Coulomb"));
+  const auto with_attempts = nlohmann::json::parse(result_json(result, 1e-8, "Coulomb"));
   EXPECT_EQ(with_attempts["attempts"][0]["solver"], "pgs");
   EXPECT_TRUE(with_attempts["attempts"][0]["pivots"].is_null());
   EXPECT_EQ(with_attempts["friction_law"], "Coulomb");

@@ -1,5 +1,6 @@
 #include <signorini/lcp/exact_sum.h>
 #include <signorini/lcp/ray.h>
+#include <signorini/lcp/solver.h>
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -372,6 +373,42 @@ TEST(Ray, AgreesWithRationalsOnRandomProblems) {
   }
 }
 #endif
+
+/// Whatever solver ended on a ray: what it says is what the ray proves in exact arithmetic.
+TEST(Ray, EverySolverThatEndsOnOneSaysWhatItProves) {
+  const Matrix walls{{1.0, -1.0}, {-1.0, 1.0}};
+  // cos and sin of two normals that are opposite but for rounding
+  const double c = 0.6;
+  const double s = 0.8;
+  const Vector up{{c, s}};
+  const Vector down{{-c, -std::nextafter(s, 1.0)}};
+  Matrix rounded(2, 2);
+  rounded << up.dot(up), up.dot(down), up.dot(down), down.dot(down);
+  for (const char* name : {"lemke", "structured-lemke", "dantzig", "block-pivoting", "auto",
+#ifdef SIGNORINI_HAS_GMP
+                           "exact"
+#endif
+       }) {
+    int proofs = 0;
+    for (const Matrix& M : {walls, Matrix(0x1p300 * walls), rounded}) {
+      for (const bool sparse : {false, true}) {
+        Problem problem;
+        problem.M = sparse ? MatrixForm(SparseMatrix(M.sparseView())) : MatrixForm(M);
+        problem.q = Vector::Constant(2, -1.0);
+        Result result;
+        make_solver(name)->solve(problem, result);
+        if (result.ray.size() == 0) {
+          continue;
+        }
+        const RayVerdict verdict = judge_ray(problem, result.ray);
+        EXPECT_EQ(result.status, verdict.status) << name << ": " << result.detail;
+        EXPECT_EQ(result.ray_bound, verdict.bound) << name;
+        proofs += verdict.status == Status::kInfeasible ? 1 : 0;
+      }
+    }
+    EXPECT_GE(proofs, 4) << name << ": the walls are proven infeasible";
+  }
+}
 
 }  // namespace
 }  // namespace signorini::lcp

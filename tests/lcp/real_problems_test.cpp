@@ -163,22 +163,11 @@ bool is_known_failure(const Reasons& reasons, const Folder& folder, const Result
 }
 
 #ifdef SIGNORINI_HAS_GMP
-const Reasons kExactFailures = {
-    {"lcp_CPS_3",
-     "a bimatrix game (nonnegative M with zero diagonal), for which Lemke from the cover (1, .., "
-     "1) "
-     "ends on its first ray, as the book says; the ray proves |z|_1 >= 1/30 and no more"},
-};
-
 class ExactSolves : public testing::TestWithParam<Folder> {};
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(ExactSolves);
 
 TEST_P(ExactSolves, Certified) {
-  const Result result = solve("exact", read_problem(GetParam().path));
-  if (is_known_failure(kExactFailures, GetParam(), result)) {
-    GTEST_SKIP() << to_string(result.status) << ": " << kExactFailures.at(GetParam().name);
-  }
-  expect_certified(result);
+  expect_certified(solve("exact", read_problem(GetParam().path)));
 }
 
 INSTANTIATE_TEST_SUITE_P(RealProblems, ExactSolves,
@@ -302,6 +291,16 @@ TEST_P(DantzigSolves, CertifiedAndWithTheWOfLemke) {
 }
 
 INSTANTIATE_TEST_SUITE_P(RealProblems, DantzigSolves,
+                         testing::ValuesIn(all_folders(kMaxRows, kMaxGeneratedRows)), test_name);
+
+class BlockPivotingSolves : public testing::TestWithParam<Folder> {};
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(BlockPivotingSolves);
+
+TEST_P(BlockPivotingSolves, CertifiedAndWithTheWOfLemke) {
+  expect_the_w_of_lemke("block-pivoting", {}, GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(RealProblems, BlockPivotingSolves,
                          testing::ValuesIn(all_folders(kMaxRows, kMaxGeneratedRows)), test_name);
 
 class StructuredLemkeSolves : public testing::TestWithParam<Folder> {};
