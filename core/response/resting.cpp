@@ -144,12 +144,21 @@ void resting_forces(const Bodies& bodies, const State& state, const ContactSet& 
     validate_wrenches("driven_acceleration", driven_acceleration, bodies.size());
   }
   settings.lcp.validate();
+  if (!(settings.stabilization_time > 0.0)) {
+    throw std::invalid_argument("resting settings: stabilization_time: must be > 0, got " +
+                                number_text(settings.stabilization_time) + " s");
+  }
   const std::unique_ptr<lcp::Solver> solver = lcp::make_solver(settings.solver, settings.lcp);
   NormalRows rows;
   assemble_normals(bodies, state, contacts, rows);
 
   RestingReport fresh;
   assemble_gap_accelerations(bodies, state, contacts, loads, driven_acceleration, fresh);
+  const double T = settings.stabilization_time;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const auto row = static_cast<lcp::Index>(i);
+    fresh.b[row] += (2.0 * rows.d_dot[row] + contacts[i].gap / T) / T;
+  }
   lcp::Problem problem;
   problem.M = rows.A;
   problem.q = fresh.b;

@@ -5,6 +5,7 @@
 #include <signorini/lcp/result.h>
 #include <signorini/lcp/solver.h>
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -20,13 +21,17 @@ struct RestingSettings {
   /// The LCP solver, a name that lcp::make_solver() knows, and what it is told.
   std::string solver = "lemke";
   lcp::SolverSettings lcp = {.tolerance = 1e-12};
+  /// Against drift of a run: b_i + 2 d_i'/T + d_i/T^2 in the place of b_i, T this time (Baumgarte,
+  /// Computer Methods in Applied Mechanics and Engineering 1, 1972, critically damped); infinite:
+  /// off. s, > 0.
+  double stabilization_time = std::numeric_limits<double>::infinity();
 };
 
 /// Resting forces: 0 <= g ⊥ A g + b >= 0 with b = d'' at g = 0 (notes, section 5; design, 4.7).
 struct RestingReport {
   lcp::Status status = lcp::Status::kNotRun;
   lcp::Vector forces;  ///< g, N, one a contact; not solved: the best iterate
-  lcp::Vector b;       ///< d'' without contact forces, m/s^2
+  lcp::Vector b;       ///< d'' without contact forces, stabilization included, m/s^2
   lcp::Vector d_ddot;  ///< A g + b, m/s^2
   /// How many of the forces at contacts that stay closed are statically indeterminate: the
   /// dimension of the changes of g that change no force and no torque on any body.

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <signorini/core/model/contact_finder.h>
+#include <signorini/core/response/impact.h>
+#include <signorini/core/response/resting.h>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace signorini {
+
+struct EventSettings {
+  Vec3 gravity = Vec3(0.0, 0.0, -9.81);  ///< m/s^2, finite
+  /// Of one segment: the turn of a body in rad, its way in m (of bodies that contact forces push);
+  /// finite, > 0.
+  double tolerance = 1e-9;
+  double longest_segment = 0.1;  ///< s, finite, > 0: forces are looked at anew at least so often
+  /// Contacts with gap at most this touch; m, finite, > 0. At least the contact time's tolerance
+  /// (collision/contact_time.h: 1e-9 of the smaller shape).
+  double touching = 1e-7;
+  /// The rule for bouncing without end: a contact that approaches slower than this has e = 0, so
+  /// the infinitely many bounces that are left of it are skipped. What is skipped: flights of less
+  /// than speed^2/(2 |d''|) height, and for e < 1 at most 2 e speed/(|d''| (1 - e)) seconds, which
+  /// the event tells. m/s, finite, > 0; flights must stay above the contact time's tolerance.
+  double resting_speed = 5e-4;
+  /// Touching contacts that separate slower than this are held by resting forces (those that were
+  /// held in the segment before: slower than resting_speed); m/s, finite, > 0.
+  double separating_speed = 1e-7;
+  /// impact.colliding_threshold is resting_speed, whatever it says. impact.friction must be off.
+  ImpactSettings impact;
+  /// resting.stabilization_time is 2 longest_segment, whatever it says: the gaps of resting
+  /// contacts do not drift, and their forces hold the correction, g being off by about d/T^2 M.
+  RestingSettings resting;
+  int most_events = 1000000;  ///< of one advance(), >= 1
+
+  /// @throws std::invalid_argument naming field, value and bound.
+  void validate() const;
+};
+
+enum class EventKind : std::uint8_t {
+  kImpact,   ///< a contact approached faster than resting_speed
+  kRest,     ///< one with 0 < e < 1 bounced slower than that and was brought to rest by the rule
+  kBreakUp,  ///< a resting force became zero
+};
+[[nodiscard]] std::string_view to_string(EventKind kind);
+
+struct Event {
+  EventKind kind = EventKind::kImpact;
+  double time = 0.0;  ///< s from the start of advance()
+  int body_a = -1;    ///< of the fastest contact (kBreakUp: of the contact that broke)
+  int body_b = -1;
+  double speed = 0.0;  ///< of approach, m/s; kBreakUp: 0
+  /// kRest: the seconds that the skipped bounces would have taken, 2 e s/(|d''| (1 - e)).
+  double skipped_seconds = 0.0;
+};
+
+struct EventReport {
+  /// kSolved: the whole duration. kIterationLimit: most_events. Else the first impact or
+  /// resting-force problem that was not solved; the state is that of `time`.
+  lcp::Status status = lcp::Status::kNotRun;
+  double time = 0.0;  ///< reached, s
+  std::vector<Event> events;
+  int segments = 0;      ///< pieces of motion
+  int force_solves = 0;  ///< resting-force problems
+  /// Of the last resting-force problem: contacts, g (N), and how many are indeterminate.
+  ContactSet resting_contacts;
+  lcp::Vector resting_forces;
+  int redundancy = 0;
+  double energy_change_impacts = 0.0;  ///< kinetic, of all impacts, driven work included, J
+  std::string detail;
+};
+
+/// The notes' system (sections 2 to 5): unconstrained motion up to the contact time, impulses for
+/// colliding contacts, forces for resting ones. Without friction: contacts with mu > 0 are refused.
+///
+/// In turn, until the duration is over:
+/// 1. Contacts with gap <= touching. If one approaches: an impact of all of them (impact.h), those
+///    slower than resting_speed with e = 0.
+/// 2. Touching contacts with d' <= separating_speed rest: their forces (resting.h), with
+///    gyroscopic and curvature terms, moving supports, and the least norm where the support is
+///    statically indeterminate.
+/// 3. A segment of constant forces (segment_motion.h), those of its middle: second order. Its
+///    length is such that the turn in one piece and in two differ by less than the tolerance, and
+///    the forces of the start and of the middle by less than the tolerance in the way they make.
+/// 4. It is cut at the first contact time of the motion that is really taken
+///    (ContactFinder::first_contact; where that reports a pair that rests, at the first overlap of
+///    another pair at the segment's end, so that one that dips in and out unseen can be missed),
+///    and where a resting force that was > 0 becomes zero, found by bisection.
+///
+/// Free flight without torque is exact in x and p: apex heights are those of the parabola to the
+/// rounding of the contact time. Velocity errors of resting contacts are of second order in a
+/// segment and are stopped in step 1 when they approach.
+class EventStepper {
+ public:
+  /// @param finder must outlive the stepper. @throws std::invalid_argument for bad bodies, settings
+  EventStepper(Bodies bodies, ContactFinder& finder, const EventSettings& settings);
+
+  /// Advances by `duration` seconds. @throws std::invalid_argument for a bad state or duration, and
+  /// for contacts with friction; state is then what it was when they were met.
+  void advance(State& state, double duration, EventReport& report);
+
+ private:
+  class Run;
+  Bodies bodies_;
+  ContactFinder& finder_;
+  EventSettings settings_;
+};
+
+}  // namespace signorini
