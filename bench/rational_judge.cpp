@@ -124,7 +124,10 @@ RationalResiduals rational_residuals(const ExactProblem& problem, const Vector& 
 }
 
 Truth find_truth(const lcp::Problem& problem, const ExactProblem& exact) {
-  lcp::ExactSolution lemke = lcp::solve_exactly(problem);
+  // Where enumeration decides, another path need not.
+  const int restarts = exact.n > kMostRowsEnumerated ? lcp::kExactRestarts : 0;
+  lcp::ExactSolution lemke = lcp::solve_exactly(
+      problem, -1, lcp::Deadline(std::numeric_limits<double>::infinity()), restarts);
   if (lemke.ending == lcp::ExactEnding::kSolution) {
     return {Existence::kSolution, std::move(lemke.z), false};
   }
