@@ -103,16 +103,21 @@ std::string_view integrator_name(Integrator integrator) {
 
 std::vector<std::string> describe(const TimeStepSettings& settings) {
   const bool quaternion = settings.orientation == OrientationScheme::kQuaternion;
+  const std::string friction = settings.friction_model == FrictionModel::kPyramid
+                                   ? fmt::format("pyramid of {} sides", settings.pyramid_sides)
+                                   : std::string(to_string(settings.friction_model));
   return {
       fmt::format("Signorini: time stepping, step {:.9g} s, gravity ({:g}, {:g}, {:g}) m/s^2",
                   settings.step, settings.gravity.x(), settings.gravity.y(), settings.gravity.z()),
       fmt::format("Signorini: {} integration, orientation as a {}",
                   integrator_name(settings.integrator),
                   quaternion ? "normalised quaternion" : "matrix with Gram-Schmidt"),
-      fmt::format("Signorini: solver {}, tolerance {:g}; friction pyramid of {} sides; contact "
-                  "margin {:g} m; touching below {:g} m; restitution threshold {:g} m/s",
-                  settings.solver, settings.lcp.tolerance, settings.pyramid_sides, settings.margin,
-                  settings.touching_tolerance, settings.restitution_threshold)};
+      fmt::format(
+          "Signorini: solver {}, tolerance {:g}; friction {}; contact "
+          "margin {:g} m; touching below {:g} m; restitution threshold {:g} m/s",
+          settings.friction_model == FrictionModel::kCone ? settings.cone_solver : settings.solver,
+          settings.lcp.tolerance, friction, settings.margin, settings.touching_tolerance,
+          settings.restitution_threshold)};
 }
 
 }  // namespace signorini::validation

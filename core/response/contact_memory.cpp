@@ -44,6 +44,23 @@ void ContactMemory::remember(const PyramidProblem& pyramid, const ContactSet& co
   for (int c = 0; c < frictional; ++c) {
     entries_[pyramid.frictional[c]].slip = z[normals + pyramid.sides * frictional + c];
   }
+  sort();
+}
+
+void ContactMemory::remember(const ConeProblem& cones, const ContactSet& contacts,
+                             const lcp::VectorRef& z) {
+  const std::vector<Vec3> impulses = contact_impulses(cones, contacts, z);
+  entries_.clear();
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const Contact& contact = contacts[i];
+    const double normal = z[cones.normal_row[i]];
+    entries_.push_back({contact.body_a, contact.body_b, contact.feature_id, normal,
+                        impulses[i] - normal * contact.normal, 0.0});
+  }
+  sort();
+}
+
+void ContactMemory::sort() {
   std::stable_sort(entries_.begin(), entries_.end(),
                    [](const Entry& a, const Entry& b) { return key(a) < key(b); });
 }
@@ -73,6 +90,26 @@ int ContactMemory::recall(const PyramidProblem& pyramid, const ContactSet& conta
       split(frame.t1.dot(entry->friction), frame.t2.dot(entry->friction), pyramid.sides,
             z.data() + normals + pyramid.sides * c);
       z[normals + pyramid.sides * frictional + c] = std::max(entry->slip, 0.0);
+    }
+  }
+  return known;
+}
+
+int ContactMemory::recall(const ConeProblem& cones, const ContactSet& contacts,
+                          lcp::Vector& z) const {
+  z.setZero(cones.problem.size());
+  int known = 0;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const Entry* entry = find(contacts[i]);
+    if (entry == nullptr) {
+      continue;
+    }
+    ++known;
+    const int row = cones.normal_row[i];
+    z[row] = std::max(entry->normal, 0.0);
+    if (cones.friction[i] > 0.0) {
+      z[row + 1] = cones.frames[i].t1.dot(entry->friction);
+      z[row + 2] = cones.frames[i].t2.dot(entry->friction);
     }
   }
   return known;

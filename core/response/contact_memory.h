@@ -1,6 +1,7 @@
 #pragma once
 
 #include <signorini/core/model/contact.h>
+#include <signorini/core/response/friction_cones.h>
 #include <signorini/core/response/friction_pyramid.h>
 
 #include <cstdint>
@@ -15,6 +16,8 @@ class ContactMemory {
   /// Keeps normal impulse, friction impulse (world axes) and lambda of every contact.
   /// @param z of the pyramid problem, finite
   void remember(const PyramidProblem& pyramid, const ContactSet& contacts, const lcp::VectorRef& z);
+  /// The same of the cones (lambda: none). @param z of the cone problem, finite
+  void remember(const ConeProblem& cones, const ContactSet& contacts, const lcp::VectorRef& z);
   void forget() { entries_.clear(); }
 
   /// Writes the z of the pyramid problem that the remembered impulses amount to: f as it was; the
@@ -22,6 +25,8 @@ class ContactMemory {
   /// pyramid on either side of it, beta >= 0; lambda as it was; zero for contacts that are new.
   /// @return how many contacts were known; z is written in any case
   int recall(const PyramidProblem& pyramid, const ContactSet& contacts, lcp::Vector& z) const;
+  /// The same for cones: f, and the friction impulse in the new frame.
+  int recall(const ConeProblem& cones, const ContactSet& contacts, lcp::Vector& z) const;
 
  private:
   struct Entry {
@@ -32,6 +37,7 @@ class ContactMemory {
     Vec3 friction;  // N s, on A
     double slip;    // lambda, m/s
   };
+  void sort();
   [[nodiscard]] const Entry* find(const Contact& contact) const;
 
   std::vector<Entry> entries_;  // sorted by their keys

@@ -86,6 +86,8 @@ void TimeStepSettings::validate() const {
   require(gravity.allFinite(), "gravity", "finite", number_text(gravity) + " m/s^2");
   require(pyramid_sides >= 4 && pyramid_sides % 2 == 0, "pyramid_sides", "even and >= 4",
           std::to_string(pyramid_sides));
+  require(friction_model <= FrictionModel::kBox, "friction_model", "one of the three models",
+          std::to_string(static_cast<int>(friction_model)));
   require_not_negative(margin, "margin", "m");
   require_not_negative(touching_tolerance, "touching_tolerance", "m");
   require_not_negative(restitution_threshold, "restitution_threshold", "m/s");
@@ -99,6 +101,7 @@ TimeStepper::TimeStepper(Bodies bodies, ContactFinder& finder, const TimeStepSet
     validate(body);
   }
   solver_ = lcp::make_solver(settings_.solver, settings_.lcp);
+  cone_solver_ = lcp::make_solver(settings_.cone_solver, settings_.lcp);
 }
 
 State TimeStepper::with_forces_applied(const State& start) const {
@@ -117,12 +120,13 @@ void TimeStepper::find(const State& state, ContactSet& contacts) {
   validate(contacts, static_cast<int>(bodies_.size()));
 }
 
-void TimeStepper::solve(const PyramidProblem& pyramid, const ContactSet& contacts,
+void TimeStepper::solve(const VelocityProblem& velocity, const ContactSet& contacts,
                         lcp::Result& result) {
-  const lcp::Problem& problem = pyramid.problem;
+  const lcp::Problem& problem = velocity.problem();
   if (problem.size() != 1) {
-    const bool warm = settings_.warm_start && memory_.recall(pyramid, contacts, start_) > 0;
-    solver_->solve(problem, result, warm ? &start_ : nullptr);
+    const bool warm = settings_.warm_start && velocity.recall(contacts, memory_, start_) > 0;
+    lcp::Solver& solver = problem.cones.empty() ? *solver_ : *cone_solver_;
+    solver.solve(problem, result, warm ? &start_ : nullptr);
     return;
   }
   result = {};
@@ -177,7 +181,7 @@ void TimeStepper::project(State& state, StepReport& report) {
 }
 
 // The solution, or the best iterate, as impulses on `state`, which has the free momenta.
-void TimeStepper::apply(const PyramidProblem& pyramid, State& state, StepReport& report) const {
+void TimeStepper::apply(const VelocityProblem& velocity, State& state, StepReport& report) const {
   const auto count = static_cast<lcp::Index>(report.contacts.size());
   const bool usable = report.result.z.allFinite();
   if (!lcp::is_solved(report.status)) {
@@ -189,8 +193,8 @@ void TimeStepper::apply(const PyramidProblem& pyramid, State& state, StepReport&
   report.impulses.assign(report.contacts.size(), Vec3::Zero());
   if (usable) {
     const double before = kinetic_energy(bodies_, state);
-    report.normal_impulses = report.result.z.head(count);
-    report.impulses = contact_impulses(pyramid, report.contacts, report.result.z);
+    report.normal_impulses = velocity.normal_impulses(report.result.z);
+    report.impulses = velocity.impulses(report.contacts, report.result.z);
     apply_contact_impulses(bodies_, report.contacts, report.impulses, state);
     report.energy_change_impact = kinetic_energy(bodies_, state) - before;
   }
@@ -213,17 +217,17 @@ void TimeStepper::step(State& state, StepReport& report) {
            report.detail);
   }
 
-  PyramidProblem pyramid;
-  assemble_pyramid(bodies_, next, report.contacts, selection.allowance, settings_.pyramid_sides,
-                   pyramid);
-  solve(pyramid, report.contacts, report.result);
+  VelocityProblem velocity;
+  velocity.assemble(settings_.friction_model, bodies_, next, report.contacts, selection.allowance,
+                    settings_.pyramid_sides);
+  solve(velocity, report.contacts, report.result);
   if (report.result.z.allFinite()) {
-    memory_.remember(pyramid, report.contacts, report.result.z);
+    velocity.remember(report.contacts, report.result.z, memory_);
   } else {
     memory_.forget();
   }
   report.status = report.result.status;
-  apply(pyramid, next, report);
+  apply(velocity, next, report);
   move(state, report.contacts, next);
   project(next, report);
   report.kinetic_energy = kinetic_energy(bodies_, next);

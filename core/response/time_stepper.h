@@ -4,7 +4,7 @@
 #include <signorini/core/model/contact_finder.h>
 #include <signorini/core/model/unconstrained_motion.h>
 #include <signorini/core/response/contact_memory.h>
-#include <signorini/core/response/friction_pyramid.h>
+#include <signorini/core/response/velocity_problem.h>
 #include <signorini/lcp/result.h>
 #include <signorini/lcp/solver.h>
 
@@ -23,7 +23,9 @@ struct TimeStepSettings {
   /// rotation is by kEnergyMomentum if that is chosen here, else semi-implicit too. kEnergyMomentum
   /// keeps energy and momentum of a free spin, and between impulses of a spin in contact.
   Integrator integrator = Integrator::kEnergyMomentum;
-  /// Sides k of the friction pyramid, even, >= 4. More sides: closer to the cone, k rows a contact.
+  FrictionModel friction_model = FrictionModel::kPyramid;
+  /// kPyramid: sides k of the friction pyramid, even, >= 4. More sides: closer to the cone, k rows
+  /// a contact.
   int pyramid_sides = 8;
   /// Contacts closer than this are in the LCP, with gap/h as their allowance; m, finite and >= 0.
   /// A pair that is farther apart and closes more than this in one step is first seen overlapping.
@@ -32,7 +34,10 @@ struct TimeStepSettings {
   double touching_tolerance = 1e-6;
   /// Restitution acts at touching contacts that approach faster than this; m/s, finite and >= 0.
   double restitution_threshold = 0.0;
-  std::string solver = "lemke";  ///< a name that lcp::make_solver() knows
+  /// A name that lcp::make_solver() knows: of the projection, and of the velocity problem but with
+  /// cones, which most solvers cannot take.
+  std::string solver = "lemke";
+  std::string cone_solver = "auto";  ///< of the velocity problem with kCone
   /// A tolerance of 1e-8 leaves velocity errors of up to 1e-8 |q|, in a resting scene 1e-8 h g =
   /// 4e-10 m/s. Such errors come back in the q of the next step; with mass ratios of 1000 and more
   /// Lemke does not always reach 1e-9 against them.
@@ -78,7 +83,8 @@ inline constexpr double kRestingSpeed = 1e-6;
 ///     0 <= beta ⊥ J_t v+ + E lambda >= 0
 ///     0 <= lambda ⊥ mu f_n - E^T beta >= 0
 ///
-/// with the masses and the contacts of the step's start. In turn:
+/// (kCone: Coulomb's law itself, friction_cones.h, in the place of the last two lines; kBox: bounds
+/// on both tangents) with the masses and the contacts of the step's start. In turn:
 ///
 /// 1. Find the contacts with gap <= margin. v* = v- + h M^-1 F in momenta: p* = p + h m g, L* = L,
 ///    w* = J^-1 L*. Torque-free rotation keeps L exactly; the gyroscopic effect comes from the new
@@ -122,8 +128,8 @@ class TimeStepper {
  private:
   [[nodiscard]] State with_forces_applied(const State& start) const;
   void find(const State& state, ContactSet& contacts);
-  void solve(const PyramidProblem& pyramid, const ContactSet& contacts, lcp::Result& result);
-  void apply(const PyramidProblem& pyramid, State& state, StepReport& report) const;
+  void solve(const VelocityProblem& velocity, const ContactSet& contacts, lcp::Result& result);
+  void apply(const VelocityProblem& velocity, State& state, StepReport& report) const;
   void move(const State& start, const ContactSet& contacts, State& state) const;
   void project(State& state, StepReport& report);
 
@@ -131,6 +137,7 @@ class TimeStepper {
   ContactFinder& finder_;
   TimeStepSettings settings_;
   std::unique_ptr<lcp::Solver> solver_;
+  std::unique_ptr<lcp::Solver> cone_solver_;
   ContactMemory memory_;
   lcp::Vector start_;
 };

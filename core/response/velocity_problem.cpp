@@ -1,0 +1,70 @@
+#include <signorini/core/response/velocity_problem.h>
+
+namespace signorini {
+namespace {
+
+/// The cones' rows with each tangent bounded by itself.
+void make_box(ConeProblem& cones) {
+  for (const lcp::FrictionCone& cone : cones.problem.cones) {
+    for (const int row : {cone.normal_row + 1, cone.normal_row + 2}) {
+      cones.problem.limits.push_back(
+          {.row = row, .normal_row = cone.normal_row, .coefficient = cone.coefficient});
+    }
+  }
+  cones.problem.cones.clear();
+}
+
+}  // namespace
+
+std::string_view to_string(FrictionModel model) {
+  switch (model) {
+    case FrictionModel::kPyramid: return "pyramid";
+    case FrictionModel::kCone: return "cone";
+    case FrictionModel::kBox: return "box";
+  }
+  return "unknown model";
+}
+
+void VelocityProblem::assemble(FrictionModel model, const Bodies& bodies, const State& free_state,
+                               const ContactSet& contacts, const lcp::VectorRef& allowance,
+                               int sides) {
+  contacts_ = static_cast<Eigen::Index>(contacts.size());
+  if (model == FrictionModel::kPyramid) {
+    PyramidProblem pyramid;
+    assemble_pyramid(bodies, free_state, contacts, allowance, sides, pyramid);
+    form_ = std::move(pyramid);
+    return;
+  }
+  ConeProblem cones;
+  assemble_cones(bodies, free_state, contacts, allowance, cones);
+  if (model == FrictionModel::kBox) {
+    make_box(cones);
+  }
+  form_ = std::move(cones);
+}
+
+const lcp::Problem& VelocityProblem::problem() const {
+  return std::visit([](const auto& form) -> const lcp::Problem& { return form.problem; }, form_);
+}
+
+lcp::Vector VelocityProblem::normal_impulses(const lcp::VectorRef& z) const {
+  const auto* cones = std::get_if<ConeProblem>(&form_);
+  return cones != nullptr ? signorini::normal_impulses(*cones, z) : lcp::Vector(z.head(contacts_));
+}
+
+std::vector<Vec3> VelocityProblem::impulses(const ContactSet& contacts,
+                                            const lcp::VectorRef& z) const {
+  return std::visit([&](const auto& form) { return contact_impulses(form, contacts, z); }, form_);
+}
+
+void VelocityProblem::remember(const ContactSet& contacts, const lcp::VectorRef& z,
+                               ContactMemory& memory) const {
+  std::visit([&](const auto& form) { memory.remember(form, contacts, z); }, form_);
+}
+
+int VelocityProblem::recall(const ContactSet& contacts, const ContactMemory& memory,
+                            lcp::Vector& z) const {
+  return std::visit([&](const auto& form) { return memory.recall(form, contacts, z); }, form_);
+}
+
+}  // namespace signorini

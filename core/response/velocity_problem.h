@@ -1,0 +1,48 @@
+#pragma once
+
+#include <signorini/core/response/contact_memory.h>
+#include <signorini/core/response/friction_cones.h>
+#include <signorini/core/response/friction_pyramid.h>
+
+#include <cstdint>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace signorini {
+
+/// What a friction force is bounded by.
+enum class FrictionModel : std::uint8_t {
+  kPyramid,  ///< a pyramid of k sides inside the cone, first side along the slip; an LCP:
+             ///< friction_pyramid.h
+  kCone,     ///< Coulomb's cone, friction against the slip in every direction: friction_cones.h
+  kBox,      ///< |beta_1| <= mu f, |beta_2| <= mu f apart, t1 along the slip: up to sqrt 2 mu f; an
+             ///< LCP with bounds coupled to f
+};
+
+/// "pyramid", "cone", "box" or "unknown model".
+[[nodiscard]] std::string_view to_string(FrictionModel model);
+
+/// A step's contact problem in one of the models, with the same questions to each.
+class VelocityProblem {
+ public:
+  /// @param sides of the pyramid; see assemble_pyramid() and assemble_cones()
+  void assemble(FrictionModel model, const Bodies& bodies, const State& free_state,
+                const ContactSet& contacts, const lcp::VectorRef& allowance, int sides);
+
+  [[nodiscard]] const lcp::Problem& problem() const;
+  /// f of every contact, N s.
+  [[nodiscard]] lcp::Vector normal_impulses(const lcp::VectorRef& z) const;
+  /// On A, world axes, N s, one a contact.
+  [[nodiscard]] std::vector<Vec3> impulses(const ContactSet& contacts,
+                                           const lcp::VectorRef& z) const;
+  void remember(const ContactSet& contacts, const lcp::VectorRef& z, ContactMemory& memory) const;
+  /// @return how many contacts were known
+  int recall(const ContactSet& contacts, const ContactMemory& memory, lcp::Vector& z) const;
+
+ private:
+  std::variant<PyramidProblem, ConeProblem> form_;
+  Eigen::Index contacts_ = 0;
+};
+
+}  // namespace signorini

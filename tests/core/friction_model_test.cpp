@@ -1,0 +1,189 @@
+#include <signorini/core/response/time_stepper.h>
+
+#include "plane_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+namespace signorini {
+namespace {
+
+using testing_tools::at;
+using testing_tools::ball_body;
+using testing_tools::box_body;
+using testing_tools::fixed_body;
+using testing_tools::PlaneContacts;
+using testing_tools::TestBall;
+using testing_tools::TestBox;
+
+constexpr double kG = 9.81;
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+class Model : public testing::TestWithParam<FrictionModel> {};
+
+INSTANTIATE_TEST_SUITE_P(All, Model,
+                         testing::Values(FrictionModel::kPyramid, FrictionModel::kCone,
+                                         FrictionModel::kBox),
+                         [](const auto& tested) { return std::string(to_string(tested.param)); });
+
+/// A brick on a slope.
+struct Slope {
+  Vec3 half = Vec3(0.5, 0.4, 0.1);
+  Quat tilt;
+  Vec3 normal, down;  // unit
+  PlaneContacts finder;
+  Bodies bodies;
+  State state;
+
+  Slope(double angle, double friction, double heading)
+      : tilt(Quat(Eigen::AngleAxisd(heading, Vec3::UnitZ())) *
+             Quat(Eigen::AngleAxisd(angle, Vec3::UnitY()))),
+        normal(tilt * Vec3::UnitZ()),
+        down(tilt * Vec3::UnitX()),
+        finder(normal, {{TestBox{half}, {friction, 0.0}}}),
+        bodies{fixed_body(), box_body(2.0, half)},
+        state{at(Vec3::Zero()), at(half.z() * normal)} {
+    state[1].q = tilt;
+  }
+};
+
+void step(TimeStepper& stepper, State& state, StepReport& report) {
+  stepper.step(state, report);
+  ASSERT_TRUE(lcp::is_solved(report.status)) << lcp::to_string(report.status);
+}
+
+TEST_P(Model, BelowTheFrictionAngleNothingCreepsIn60Seconds) {
+  for (const double heading : {0.0, 0.7}) {
+    Slope slope(std::atan(0.98 * 0.5), 0.5, heading);
+    TimeStepper stepper(
+        slope.bodies, slope.finder,
+        {.step = 1.0 / 60.0, .friction_model = GetParam(), .lcp = {.tolerance = 1e-12}});
+    const State start = slope.state;
+    StepReport report;
+    for (int i = 0; i < 3600; ++i) {
+      step(stepper, slope.state, report);
+    }
+    const Vec3 moved = slope.state[1].x - start[1].x;
+    EXPECT_LE((moved - moved.dot(slope.normal) * slope.normal).norm(), 1e-12);
+    EXPECT_LE(std::abs(moved.dot(slope.normal)), 1e-9);
+  }
+}
+
+TEST_P(Model, ARollingBallForgetsItsSlipAfterTwoSeventhsOfV0OverMuG) {
+  const double mu = 0.2;
+  const double v0 = 7.0;
+  const double h = 1.0 / 2400.0;
+  const double radius = 0.5;
+  PlaneContacts finder(Vec3::UnitZ(), {{TestBall{radius}, {mu, 0.0}}});
+  TimeStepper stepper({fixed_body(), ball_body(2.0, radius)}, finder,
+                      {.step = h, .friction_model = GetParam()});
+  State state{at(Vec3::Zero()), at(Vec3(0, 0, radius))};
+  const Vec3 heading(0.6, 0.8, 0.0);
+  state[1].p = 2.0 * v0 * heading;
+  const auto slip = [&] {
+    const Velocity v = velocity(stepper.bodies()[1], state[1]);
+    return v.at(Vec3(0, 0, -radius)).norm();
+  };
+  StepReport report;
+  double before = slip();
+  int steps = 0;
+  while (slip() > 1e-6 && steps < 4000) {
+    before = slip();
+    step(stepper, state, report);
+    ++steps;
+  }
+  // The last step needed only a part of its friction: slip falls by 7/2 mu g h a step.
+  const double time = h * (steps - 1 + before / (3.5 * mu * kG * h));
+  const double expected = 2.0 * v0 / (7.0 * mu * kG);
+  EXPECT_NEAR(time, expected, 1e-3 * expected);
+  const Vec3 v = state[1].p / 2.0;
+  EXPECT_NEAR(v.dot(heading), 5.0 / 7.0 * v0, 1e-6);
+  EXPECT_NEAR(v.cross(heading).norm(), 0.0, 1e-6);
+}
+
+/// The largest angle between a contact's friction and the opposite of its slip after the step, of a
+/// brick that slides at this heading across a slope.
+double direction_error(FrictionModel model, double heading) {
+  Slope slope(0.3, 0.4, 0.2);
+  // It spins too: what one corner's friction does turns the slip of the others away from u*, along
+  // which a pyramid has its first side.
+  const Vec3 v = 0.1 * (slope.tilt * Vec3(std::cos(heading), std::sin(heading), 0.0));
+  slope.state[1].p = 2.0 * v;
+  slope.state[1].L = 0.1 * slope.normal;
+  TimeStepper stepper(slope.bodies, slope.finder,
+                      {.step = 1.0 / 60.0, .friction_model = model, .pyramid_sides = 4});
+  StepReport report;
+  double worst = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const State before = slope.state;
+    step(stepper, slope.state, report);
+    State after = before;  // positions of the step's start, momenta of its end
+    after[1].p = slope.state[1].p;
+    after[1].L = slope.state[1].L;
+    for (std::size_t c = 0; c < report.contacts.size(); ++c) {
+      const Contact& contact = report.contacts[c];
+      const Vec3 u = slip_velocity(slope.bodies, after, contact);
+      const Vec3 slip = u - u.dot(contact.normal) * contact.normal;
+      const Vec3 friction =
+          report.impulses[c] - report.normal_impulses[static_cast<lcp::Index>(c)] * contact.normal;
+      if (slip.norm() > 1e-4 && friction.norm() > 1e-6) {
+        worst = std::max(worst, std::atan2(slip.cross(friction).norm(), -slip.dot(friction)));
+      }
+    }
+  }
+  return worst;
+}
+
+TEST(FrictionModels, TheConesFrictionOpposesTheSlipAtEveryHeading) {
+  double cone = 0.0;
+  double pyramid = 0.0;
+  for (int degrees = 0; degrees < 360; degrees += 15) {
+    cone = std::max(cone, direction_error(FrictionModel::kCone, degrees * kDegree));
+    pyramid = std::max(pyramid, direction_error(FrictionModel::kPyramid, degrees * kDegree));
+  }
+  EXPECT_LT(cone, 0.1 * kDegree);
+  EXPECT_GT(pyramid, 1.0 * kDegree);  // the measure can fail
+}
+
+TEST_P(Model, ImpulsesStayWithinTheModelsLimit) {
+  Slope slope(0.3, 0.4, 0.2);
+  slope.state[1].p = Vec3(1.0, 2.0, 0.0);
+  slope.state[1].L = Vec3(0.0, 0.0, 0.4);
+  TimeStepper stepper(slope.bodies, slope.finder, {.friction_model = GetParam()});
+  const double most = GetParam() == FrictionModel::kBox ? std::sqrt(2.0) : 1.0;
+  StepReport report;
+  for (int i = 0; i < 60; ++i) {
+    step(stepper, slope.state, report);
+    EXPECT_LE(report.energy_change_impact, 1e-12);
+    for (std::size_t c = 0; c < report.contacts.size(); ++c) {
+      const double f = report.normal_impulses[static_cast<lcp::Index>(c)];
+      const Vec3 friction = report.impulses[c] - f * report.contacts[c].normal;
+      EXPECT_GE(f, -1e-12);
+      EXPECT_LE(friction.norm(), most * 0.4 * f + 1e-9);
+    }
+  }
+}
+
+TEST_P(Model, WithoutFrictionTheModelsAreOne) {
+  Slope slope(0.3, 0.0, 0.2);
+  TimeStepper stepper(slope.bodies, slope.finder, {.friction_model = GetParam()});
+  StepReport report;
+  for (int i = 0; i < 60; ++i) {
+    step(stepper, slope.state, report);
+  }
+  EXPECT_NEAR((slope.state[1].p / 2.0).dot(slope.down), 60 * kG * std::sin(0.3) / 240.0, 1e-9);
+}
+
+TEST(FrictionModels, AnUnknownModelIsRefused) {
+  TimeStepSettings settings;
+  settings.friction_model = static_cast<FrictionModel>(7);
+  EXPECT_THROW(settings.validate(), std::invalid_argument);
+  EXPECT_EQ(to_string(settings.friction_model), "unknown model");
+}
+
+}  // namespace
+}  // namespace signorini
