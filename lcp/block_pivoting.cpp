@@ -21,11 +21,12 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kRounding = 16.0;  // roundings that are no wrong sign
-constexpr int kCorrections = 12;    // refinement steps of a solve on a set at most
-constexpr double kHelps = 0.5;      // of the residual: what a proximal step must leave at most
-constexpr int kIdleSteps = 12;      // proximal steps in a row that may not help
-constexpr double kFarRay = 1e3;     // a ray must speak of z this much larger than the best one
+constexpr double kRounding = 16.0;   // roundings that are no wrong sign
+constexpr int kCorrections = 12;     // refinement steps of a solve on a set at most
+constexpr double kHelps = 0.5;       // of the residual: what a proximal step must leave at most
+constexpr int kIdleSteps = 12;       // proximal steps in a row that may not help
+constexpr int kIdleStepsToARay = 2;  // after which z may be running away
+constexpr double kFarRay = 1e3;      // a ray must speak of z this much larger than the best one
 // Where blocks go round and single exchanges take long, delta grows by this, up to kMostProximal,
 // and falls by it from round to round.
 constexpr double kProximalFactor = 100.0;
@@ -140,6 +141,10 @@ Status BlockPivoting::Workspace::solve(const Problem& problem, const Vector* war
     }
     idle = residual <= kHelps * before || proximal_ > settings_.proximal ? 0 : idle + 1;
     before = std::min(before, residual);
+    if (idle == kIdleStepsToARay && problem.is_lcp() && collect_ray(problem, result.ray)) {
+      status = Status::kRayUnproven;
+      break;
+    }
     const double lowest = idle > 0 ? kLeastProximal : std::min(proximal_, settings_.proximal);
     proximal_ = std::max(lowest, proximal_ / kProximalFall);
     least_proximal_ = std::min(least_proximal_, proximal_);
