@@ -33,31 +33,42 @@ void split(double a, double b, int sides, double* beta) {
 
 void ContactMemory::remember(const PyramidProblem& pyramid, const ContactSet& contacts,
                              const lcp::VectorRef& z) {
-  const int normals = static_cast<int>(contacts.size());
-  const int frictional = static_cast<int>(pyramid.frictional.size());
-  const std::vector<Vec3> impulses = contact_impulses(pyramid, contacts, z);
-  entries_.clear();
-  for (int i = 0; i < normals; ++i) {
-    entries_.push_back({contacts[i].body_a, contacts[i].body_b, contacts[i].feature_id, z[i],
-                        impulses[i] - z[i] * contacts[i].normal, 0.0});
-  }
-  for (int c = 0; c < frictional; ++c) {
-    entries_[pyramid.frictional[c]].slip = z[normals + pyramid.sides * frictional + c];
-  }
+  forget();
+  add(pyramid, contacts, z);
   sort();
 }
 
 void ContactMemory::remember(const ConeProblem& cones, const ContactSet& contacts,
                              const lcp::VectorRef& z) {
+  forget();
+  add(cones, contacts, z);
+  sort();
+}
+
+void ContactMemory::add(const PyramidProblem& pyramid, const ContactSet& contacts,
+                        const lcp::VectorRef& z) {
+  const int normals = static_cast<int>(contacts.size());
+  const int frictional = static_cast<int>(pyramid.frictional.size());
+  const std::vector<Vec3> impulses = contact_impulses(pyramid, contacts, z);
+  const std::size_t first = entries_.size();
+  for (int i = 0; i < normals; ++i) {
+    entries_.push_back({contacts[i].body_a, contacts[i].body_b, contacts[i].feature_id, z[i],
+                        impulses[i] - z[i] * contacts[i].normal, 0.0});
+  }
+  for (int c = 0; c < frictional; ++c) {
+    entries_[first + pyramid.frictional[c]].slip = z[normals + pyramid.sides * frictional + c];
+  }
+}
+
+void ContactMemory::add(const ConeProblem& cones, const ContactSet& contacts,
+                        const lcp::VectorRef& z) {
   const std::vector<Vec3> impulses = contact_impulses(cones, contacts, z);
-  entries_.clear();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const Contact& contact = contacts[i];
     const double normal = z[cones.normal_row[i]];
     entries_.push_back({contact.body_a, contact.body_b, contact.feature_id, normal,
                         impulses[i] - normal * contact.normal, 0.0});
   }
-  sort();
 }
 
 void ContactMemory::sort() {

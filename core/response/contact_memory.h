@@ -13,11 +13,16 @@ namespace signorini {
 /// by its bodies and its feature id; of two with the same key the first counts.
 class ContactMemory {
  public:
-  /// Keeps normal impulse, friction impulse (world axes) and lambda of every contact.
+  /// Keeps normal impulse, friction impulse (world axes) and lambda of every contact, nothing else.
   /// @param z of the pyramid problem, finite
   void remember(const PyramidProblem& pyramid, const ContactSet& contacts, const lcp::VectorRef& z);
   /// The same of the cones (lambda: none). @param z of the cone problem, finite
   void remember(const ConeProblem& cones, const ContactSet& contacts, const lcp::VectorRef& z);
+  /// Keeps what is known too, for a step in several parts; sort() after the last.
+  void add(const PyramidProblem& pyramid, const ContactSet& contacts, const lcp::VectorRef& z);
+  void add(const ConeProblem& cones, const ContactSet& contacts, const lcp::VectorRef& z);
+  /// Makes what was added known.
+  void sort();
   void forget() { entries_.clear(); }
 
   /// Writes the z of the pyramid problem that the remembered impulses amount to: f as it was; the
@@ -37,7 +42,6 @@ class ContactMemory {
     Vec3 friction;  // N s, on A
     double slip;    // lambda, m/s
   };
-  void sort();
   [[nodiscard]] const Entry* find(const Contact& contact) const;
 
   std::vector<Entry> entries_;  // sorted by their keys

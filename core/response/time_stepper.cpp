@@ -2,6 +2,7 @@
 #include <signorini/core/model/number_text.h>
 #include <signorini/core/response/assembly.h>
 #include <signorini/core/response/position_projection.h>
+#include <signorini/core/response/set_impact.h>
 #include <signorini/core/response/time_stepper.h>
 #include <signorini/lcp/certificate.h>
 
@@ -72,11 +73,48 @@ Selection select(const ContactSet& found, const lcp::Vector& d_dot, const lcp::V
   return selection;
 }
 
-// One row without bounds: 0 <= f ⊥ A f + q >= 0.
-lcp::Vector closed_form(const lcp::Problem& problem) {
-  lcp::Vector A;
-  lcp::diagonal(problem.M, A);
-  return (-problem.q.array() / A.array()).max(0.0);
+bool is_worse(const lcp::Result& a, const lcp::Result& b) {
+  const bool solved = lcp::is_solved(a.status);
+  if (solved != lcp::is_solved(b.status)) {
+    return !solved;
+  }
+  return solved && a.certificate.unit_free_residual > b.certificate.unit_free_residual;
+}
+
+/// Keeps the worse result in `kept`, with the sum of both times.
+void keep_worse(lcp::Result&& result, lcp::Result& kept) {
+  const double seconds = std::max(result.statistics.solve_seconds, 0.0);
+  const double before = std::max(kept.statistics.solve_seconds, 0.0);
+  if (kept.status == lcp::Status::kNotRun || is_worse(result, kept)) {
+    kept = std::move(result);
+  }
+  kept.statistics.solve_seconds = before + seconds;
+}
+
+int dynamic_bodies(const Bodies& bodies) {
+  return static_cast<int>(std::count_if(bodies.begin(), bodies.end(),
+                                        [](const Body& body) { return body.is_dynamic(); }));
+}
+
+/// " of island 2", or nothing where there is one.
+std::string of_island(const StepReport& report) {
+  const std::size_t number = report.islands.size();
+  return number == 1 ? "" : " of island " + std::to_string(number - 1);
+}
+
+IslandReport describe(const ContactIsland& island, const lcp::Problem& problem,
+                      const lcp::Result& result, FrictionModel model) {
+  const bool friction = problem.size() > static_cast<lcp::Index>(island.contacts.size());
+  IslandReport report;
+  report.bodies = dynamic_bodies(island.bodies);
+  report.contacts = static_cast<int>(island.contacts.size());
+  report.rows = static_cast<int>(problem.size());
+  report.model = (report.contacts == 1 ? "single contact, " : "") +
+                 std::string(friction ? to_string(model) : "frictionless");
+  report.solver = result.solver;
+  report.status = result.status;
+  report.unit_free_residual = result.certificate.unit_free_residual;
+  return report;
 }
 
 }  // namespace
@@ -123,18 +161,79 @@ void TimeStepper::find(const State& state, ContactSet& contacts) {
 void TimeStepper::solve(const VelocityProblem& velocity, const ContactSet& contacts,
                         lcp::Result& result) {
   const lcp::Problem& problem = velocity.problem();
-  if (problem.size() != 1) {
-    const bool warm = settings_.warm_start && velocity.recall(contacts, memory_, start_) > 0;
-    lcp::Solver& solver = problem.cones.empty() ? *solver_ : *cone_solver_;
-    solver.solve(problem, result, warm ? &start_ : nullptr);
-    return;
-  }
   result = {};
-  result.solver = "closed form";
-  result.z = closed_form(problem);
-  result.certificate = lcp::certify(problem, result.z, &result.w);
-  result.status =
-      lcp::judge(result.certificate, settings_.lcp.tolerance, lcp::Status::kNumericalBreakdown);
+  result.z = velocity.closed_form();
+  if (result.z.size() > 0) {
+    result.solver = "closed form";
+    result.certificate = lcp::certify(problem, result.z, &result.w);
+    result.status =
+        lcp::judge(result.certificate, settings_.lcp.tolerance, lcp::Status::kNumericalBreakdown);
+    if (lcp::is_solved(result.status)) {
+      return;
+    }
+  }
+  const bool warm = settings_.warm_start && velocity.recall(contacts, memory_, start_) > 0;
+  lcp::Solver& solver = problem.cones.empty() ? *solver_ : *cone_solver_;
+  solver.solve(problem, result, warm ? &start_ : nullptr);
+}
+
+void TimeStepper::solve_islands(const std::vector<ContactIsland>& islands, StepReport& report) {
+  report.normal_impulses = lcp::Vector::Zero(static_cast<lcp::Index>(report.contacts.size()));
+  report.impulses.assign(report.contacts.size(), Vec3::Zero());
+  report.island_of.assign(report.contacts.size(), -1);
+  report.dynamic_bodies_without_rows = dynamic_bodies(bodies_);
+  next_memory_.forget();
+  report.status = lcp::Status::kSolved;
+  for (const ContactIsland& island : islands) {
+    VelocityProblem velocity;
+    velocity.assemble(settings_.friction_model, island.bodies, island.state, island.contacts,
+                      island.allowance, settings_.pyramid_sides);
+    ContactSet contacts;
+    for (const int i : island.members) {
+      contacts.push_back(report.contacts[i]);
+      report.island_of[i] = static_cast<int>(report.islands.size());
+      report.tangents_left_out += report.contacts[i].material.friction > 0.0 ? 0 : 2;
+    }
+    lcp::Result result;
+    solve(velocity, contacts, result);
+    report.islands.push_back(
+        describe(island, velocity.problem(), result, settings_.friction_model));
+    report.rows += report.islands.back().rows;
+    report.dynamic_bodies_without_rows -= report.islands.back().bodies;
+    collect(velocity, contacts, island.members, std::move(result), report);
+  }
+  next_memory_.sort();
+  std::swap(memory_, next_memory_);
+  if (islands.empty()) {
+    VelocityProblem none;
+    none.assemble(settings_.friction_model, bodies_, {}, {}, lcp::Vector(),
+                  settings_.pyramid_sides);
+    solver_->solve(none.problem(), report.result);
+  }
+}
+
+/// An island's solution, or its best iterate, into the report and the memory.
+void TimeStepper::collect(const VelocityProblem& velocity, const ContactSet& contacts,
+                          const std::vector<int>& members, lcp::Result&& result,
+                          StepReport& report) {
+  const bool usable = result.z.allFinite();
+  if (!lcp::is_solved(result.status)) {
+    append("velocity problem" + of_island(report) + ": " +
+               std::string(lcp::to_string(result.status)) +
+               (usable ? ", best iterate applied" : ", no impulses applied"),
+           report.detail);
+  }
+  report.status = worse(report.status, result.status);
+  if (usable) {
+    velocity.remember(contacts, result.z, next_memory_);
+    const lcp::Vector normals = velocity.normal_impulses(result.z);
+    const std::vector<Vec3> impulses = velocity.impulses(contacts, result.z);
+    for (std::size_t j = 0; j < members.size(); ++j) {
+      report.normal_impulses[members[j]] = normals[static_cast<lcp::Index>(j)];
+      report.impulses[members[j]] = impulses[j];
+    }
+  }
+  keep_worse(std::move(result), report.result);
 }
 
 // `state` has the momenta after the impulses and the positions of the start.
@@ -180,24 +279,11 @@ void TimeStepper::project(State& state, StepReport& report) {
   append(projection.detail, report.detail);
 }
 
-// The solution, or the best iterate, as impulses on `state`, which has the free momenta.
-void TimeStepper::apply(const VelocityProblem& velocity, State& state, StepReport& report) const {
-  const auto count = static_cast<lcp::Index>(report.contacts.size());
-  const bool usable = report.result.z.allFinite();
-  if (!lcp::is_solved(report.status)) {
-    append("velocity problem: " + std::string(lcp::to_string(report.status)) +
-               (usable ? ", best iterate applied" : ", no impulses applied"),
-           report.detail);
-  }
-  report.normal_impulses = lcp::Vector::Zero(count);
-  report.impulses.assign(report.contacts.size(), Vec3::Zero());
-  if (usable) {
-    const double before = kinetic_energy(bodies_, state);
-    report.normal_impulses = velocity.normal_impulses(report.result.z);
-    report.impulses = velocity.impulses(report.contacts, report.result.z);
-    apply_contact_impulses(bodies_, report.contacts, report.impulses, state);
-    report.energy_change_impact = kinetic_energy(bodies_, state) - before;
-  }
+// The impulses on `state`, which has the free momenta.
+void TimeStepper::apply(State& state, StepReport& report) const {
+  const double before = kinetic_energy(bodies_, state);
+  apply_contact_impulses(bodies_, report.contacts, report.impulses, state);
+  report.energy_change_impact = kinetic_energy(bodies_, state) - before;
 }
 
 void TimeStepper::step(State& state, StepReport& report) {
@@ -217,17 +303,9 @@ void TimeStepper::step(State& state, StepReport& report) {
            report.detail);
   }
 
-  VelocityProblem velocity;
-  velocity.assemble(settings_.friction_model, bodies_, next, report.contacts, selection.allowance,
-                    settings_.pyramid_sides);
-  solve(velocity, report.contacts, report.result);
-  if (report.result.z.allFinite()) {
-    velocity.remember(report.contacts, report.result.z, memory_);
-  } else {
-    memory_.forget();
-  }
-  report.status = report.result.status;
-  apply(velocity, next, report);
+  check_dynamic(bodies_, report.contacts);
+  solve_islands(contact_islands(bodies_, next, report.contacts, selection.allowance), report);
+  apply(next, report);
   move(state, report.contacts, next);
   project(next, report);
   report.kinetic_energy = kinetic_energy(bodies_, next);

@@ -3,7 +3,9 @@
 #include <signorini/core/model/body.h>
 #include <signorini/core/model/contact_finder.h>
 #include <signorini/core/model/unconstrained_motion.h>
+#include <signorini/core/response/contact_islands.h>
 #include <signorini/core/response/contact_memory.h>
+#include <signorini/core/response/step_report.h>
 #include <signorini/core/response/velocity_problem.h>
 #include <signorini/lcp/result.h>
 #include <signorini/lcp/solver.h>
@@ -50,28 +52,6 @@ struct TimeStepSettings {
   void validate() const;
 };
 
-/// What one step did.
-struct StepReport {
-  lcp::Status status = lcp::Status::kNotRun;  ///< of the velocity problem
-  ContactSet contacts;                        ///< those in the problem
-  lcp::Vector normal_impulses;                ///< N s, one for each of `contacts`
-  std::vector<Vec3> impulses;                 ///< whole contact impulses on A, world, N s
-  /// Contacts found but left out of the problem: apart, with restitution, and approaching fast.
-  int contacts_left_out = 0;
-  double kinetic_energy = 0.0;        ///< after the step, J
-  double potential_energy = 0.0;      ///< after the step, J
-  double energy_change_impact = 0.0;  ///< kinetic energy change by the contact impulses (what
-                                      ///< driven bodies did through them included), J
-  /// Energy change by the position projection: potential, and kinetic where turning a body changes
-  /// J with L fixed; J.
-  double energy_change_projection = 0.0;
-  double deepest_overlap = 0.0;  ///< max(0, -gap) over the contacts at the start of the step, m
-  lcp::Status projection_status = lcp::Status::kNotRun;  ///< kNotRun: nothing to project
-  lcp::Result result;  ///< of the velocity problem; solver "closed form" for one contact without
-                       ///< friction
-  std::string detail;  ///< one line: anything beyond the plain scheme
-};
-
 /// After the impulses, a contact slower than this (m/s) neither leaves nor approaches.
 inline constexpr double kRestingSpeed = 1e-6;
 
@@ -97,9 +77,11 @@ inline constexpr double kRestingSpeed = 1e-6;
 ///    it approaches faster than restitution_threshold and than the forces make it in one step
 ///    (below that it cannot be told from a resting one, and is caught). A bounce then starts up to
 ///    h |d'-| deep.
-/// 3. Solve, apply the impulses (driven and fixed bodies take none), move x and q with v+. Without
-///    contacts the problem is empty; one contact without friction is solved in closed form, f =
-///    max(0, -(d'* + allowance)/A), and certified like any other.
+/// 3. Solve each island (contact_islands.h) apart, in order; apply the impulses (driven and fixed
+///    bodies take none), move x and q with v+. Without contacts the problem is empty. An island of
+///    one contact is answered in closed form where there is one, and certified like any other:
+///    without friction f = max(0, -(d'* + allowance)/A); with a cone or a box z = 0 where it
+///    separates, -A^-1 q where that sticks within the bounds.
 /// 4. Project overlapping positions (position_projection.h). Contacts that leave faster than
 ///    kRestingSpeed are not projected, nor those with restitution that approach faster than
 ///    kRestingSpeed and restitution_threshold: a ball that bounces leaves by itself, and lifting it
@@ -128,8 +110,11 @@ class TimeStepper {
  private:
   [[nodiscard]] State with_forces_applied(const State& start) const;
   void find(const State& state, ContactSet& contacts);
+  void solve_islands(const std::vector<ContactIsland>& islands, StepReport& report);
   void solve(const VelocityProblem& velocity, const ContactSet& contacts, lcp::Result& result);
-  void apply(const VelocityProblem& velocity, State& state, StepReport& report) const;
+  void collect(const VelocityProblem& velocity, const ContactSet& contacts,
+               const std::vector<int>& members, lcp::Result&& result, StepReport& report);
+  void apply(State& state, StepReport& report) const;
   void move(const State& start, const ContactSet& contacts, State& state) const;
   void project(State& state, StepReport& report);
 
@@ -139,6 +124,7 @@ class TimeStepper {
   std::unique_ptr<lcp::Solver> solver_;
   std::unique_ptr<lcp::Solver> cone_solver_;
   ContactMemory memory_;
+  ContactMemory next_memory_;
   lcp::Vector start_;
 };
 

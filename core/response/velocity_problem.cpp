@@ -1,5 +1,10 @@
 #include <signorini/core/response/velocity_problem.h>
 
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 namespace signorini {
 namespace {
 
@@ -12,6 +17,13 @@ void make_box(ConeProblem& cones) {
     }
   }
   cones.problem.cones.clear();
+}
+
+bool is_within(const ConeProblem& cones, const lcp::Vector& z) {
+  const double most = cones.friction.front() * z[0];
+  const bool box = cones.problem.cones.empty();
+  const double tangential = box ? std::max(std::abs(z[1]), std::abs(z[2])) : std::hypot(z[1], z[2]);
+  return z[0] >= 0.0 && tangential <= most;
 }
 
 }  // namespace
@@ -59,12 +71,31 @@ std::vector<Vec3> VelocityProblem::impulses(const ContactSet& contacts,
 
 void VelocityProblem::remember(const ContactSet& contacts, const lcp::VectorRef& z,
                                ContactMemory& memory) const {
-  std::visit([&](const auto& form) { memory.remember(form, contacts, z); }, form_);
+  std::visit([&](const auto& form) { memory.add(form, contacts, z); }, form_);
 }
 
 int VelocityProblem::recall(const ContactSet& contacts, const ContactMemory& memory,
                             lcp::Vector& z) const {
   return std::visit([&](const auto& form) { return memory.recall(form, contacts, z); }, form_);
+}
+
+lcp::Vector VelocityProblem::closed_form() const {
+  const lcp::Problem& asked = problem();
+  if (contacts_ == 1 && asked.size() == 1) {
+    lcp::Vector A;
+    lcp::diagonal(asked.M, A);
+    return (-asked.q.array() / A.array()).max(0.0);
+  }
+  const auto* cones = std::get_if<ConeProblem>(&form_);
+  if (cones == nullptr || contacts_ != 1) {
+    return {};
+  }
+  if (asked.q[0] >= 0.0) {
+    return lcp::Vector::Zero(3);
+  }
+  const Mat3 A = lcp::to_dense(asked.M);
+  const lcp::Vector z = A.llt().solve(-asked.q);
+  return z.allFinite() && is_within(*cones, z) ? z : lcp::Vector();
 }
 
 }  // namespace signorini

@@ -36,7 +36,12 @@ class VelocityProblem {
   /// On A, world axes, N s, one a contact.
   [[nodiscard]] std::vector<Vec3> impulses(const ContactSet& contacts,
                                            const lcp::VectorRef& z) const;
+  /// Adds to memory; see ContactMemory::add().
   void remember(const ContactSet& contacts, const lcp::VectorRef& z, ContactMemory& memory) const;
+  /// The solution of a single contact where it has a closed form, else empty: without friction f =
+  /// max(0, -q/A); with a cone or a box 0 where q_N >= 0, else -A^-1 q where that is within the
+  /// bounds.
+  [[nodiscard]] lcp::Vector closed_form() const;
   /// @return how many contacts were known
   int recall(const ContactSet& contacts, const ContactMemory& memory, lcp::Vector& z) const;
 

@@ -1,0 +1,25 @@
+#include <signorini/core/model/number_text.h>
+#include <signorini/core/response/step_report.h>
+
+namespace signorini {
+
+std::string to_text(const StepReport& report) {
+  const auto count = [](std::size_t number) { return std::to_string(number); };
+  std::string text =
+      count(report.contacts.size()) + " contacts, " + count(report.islands.size()) + " islands, " +
+      std::to_string(report.rows) + " rows; left out: " + std::to_string(report.contacts_left_out) +
+      " contacts about to bounce, " + std::to_string(report.tangents_left_out) +
+      " tangents without friction, " + std::to_string(report.dynamic_bodies_without_rows) +
+      " bodies without contact\n";
+  for (std::size_t k = 0; k < report.islands.size(); ++k) {
+    const IslandReport& island = report.islands[k];
+    text += "island " + count(k) + ": " + std::to_string(island.bodies) + " bodies, " +
+            std::to_string(island.contacts) + " contacts, " + std::to_string(island.rows) +
+            " rows, " + island.model + ", " + island.solver + ": " +
+            std::string(lcp::to_string(island.status)) + ", residual " +
+            number_text(island.unit_free_residual) + "\n";
+  }
+  return text;
+}
+
+}  // namespace signorini

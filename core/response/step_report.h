@@ -1,0 +1,57 @@
+#pragma once
+
+#include <signorini/core/model/contact.h>
+#include <signorini/lcp/result.h>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace signorini {
+
+/// What was solved for one island of a step.
+struct IslandReport {
+  int bodies = 0;     ///< dynamic
+  int contacts = 0;   ///< rows of normals
+  int rows = 0;       ///< of the problem
+  std::string model;  ///< "frictionless", or the friction model; "single contact, " before it
+  std::string solver;
+  lcp::Status status = lcp::Status::kNotRun;
+  double unit_free_residual = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// What one step did.
+struct StepReport {
+  /// Of the velocity problem: of the islands the first that is not solved, else solved to rounding
+  /// if one is.
+  lcp::Status status = lcp::Status::kNotRun;
+  ContactSet contacts;                ///< those in the problem
+  lcp::Vector normal_impulses;        ///< N s, one for each of `contacts`
+  std::vector<Vec3> impulses;         ///< whole contact impulses on A, world, N s
+  std::vector<int> island_of;         ///< of each of `contacts`, into `islands`
+  std::vector<IslandReport> islands;  ///< solved apart, in the order of their first contact
+  int rows = 0;                       ///< of all islands
+  /// Contacts found but left out of the problem: apart, with restitution, and approaching fast.
+  int contacts_left_out = 0;
+  int tangents_left_out = 0;  ///< tangential rows not made: contacts without friction
+  int dynamic_bodies_without_rows = 0;
+  double kinetic_energy = 0.0;        ///< after the step, J
+  double potential_energy = 0.0;      ///< after the step, J
+  double energy_change_impact = 0.0;  ///< kinetic energy change by the contact impulses (what
+                                      ///< driven bodies did through them included), J
+  /// Energy change by the position projection: potential, and kinetic where turning a body changes
+  /// J with L fixed; J.
+  double energy_change_projection = 0.0;
+  double deepest_overlap = 0.0;  ///< max(0, -gap) over the contacts at the start of the step, m
+  lcp::Status projection_status = lcp::Status::kNotRun;  ///< kNotRun: nothing to project
+  /// Of the island that ended worst (not solved before solved, then by the unit-free residual);
+  /// statistics.solve_seconds: of all islands. Solver "closed form" for one contact that needs
+  /// none.
+  lcp::Result result;
+  std::string detail;  ///< one line: anything beyond the plain scheme
+};
+
+/// The report as text: a line on rows made and left out, by reason, then a line an island.
+[[nodiscard]] std::string to_text(const StepReport& report);
+
+}  // namespace signorini
