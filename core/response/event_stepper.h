@@ -29,10 +29,10 @@ struct EventSettings {
   /// held in the segment before: slower than resting_speed); m/s, finite, > 0.
   double separating_speed = 1e-7;
   /// impact.colliding_threshold is resting_speed, whatever it says. impact.friction must be off.
-  ImpactSettings impact;
+  ImpactSettings impact = {};
   /// resting.stabilization_time is 2 longest_segment, whatever it says: the gaps of resting
   /// contacts do not drift, and their forces hold the correction, g being off by about d/T^2 M.
-  RestingSettings resting;
+  RestingSettings resting = {};
   int most_events = 1000000;  ///< of one advance(), >= 1
 
   /// @throws std::invalid_argument naming field, value and bound.

@@ -145,6 +145,24 @@ TEST(EventStepper, ACradleWithAirSendsOneBallAwayAndAGravityFreeSceneKeepsItsEne
   EXPECT_NEAR(kinetic_energy(world.scene.bodies, world.scene.state), before, 1e-12 * before);
 }
 
+TEST(EventStepper, ImpactsOfManyElasticBallsKeepTheEnergy) {
+  World world;
+  for (int i = 0; i < 27; ++i) {
+    const Vec3 x(1.1 * (i % 3) + 0.01 * (i % 5), 1.1 * (i / 3 % 3) - 0.01 * (i % 7),
+                 1 + 1.1 * (i / 9));
+    world.add(scenes::ball(1.0, 0.5), Sphere{0.5}, x, 1.0);
+  }
+  const auto energy = [&] {
+    return kinetic_energy(world.scene.bodies, world.scene.state) +
+           potential_energy(world.scene.bodies, world.scene.state, Vec3(0, 0, -kG));
+  };
+  const double before = energy();
+  const EventReport report = world.run(1.0);
+  EXPECT_GT(report.events.size(), 50u);
+  EXPECT_LE(std::abs(report.energy_change_impacts), 1e-12 * before);
+  EXPECT_NEAR(energy(), before, 1e-12 * before);
+}
+
 TEST(EventStepper, AMovingSupportCarriesItsLoad) {
   World world;
   world.scene.bodies[0].kind = BodyKind::kKinematic;

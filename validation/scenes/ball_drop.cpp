@@ -1,6 +1,8 @@
+#include <signorini/core/response/event_stepper.h>
 #include <signorini/validation/builtin_scenes.h>
 #include <signorini/validation/checks.h>
 #include <signorini/validation/generic_checks.h>
+#include <signorini/validation/scene_contacts.h>
 #include <signorini/validation/signorini_runner.h>
 
 #include <algorithm>
@@ -155,6 +157,38 @@ void check_rest(const Drop& drop, const Scene& scene, const Track& track, SceneR
                                                       : shown(text, end, 0.0));
 }
 
+/// The event-driven stepper from apex to apex, and, for e < 1, until the ball rests.
+void check_events(const Scene& scene, const Drop& drop, SceneReport& report) {
+  SceneContacts contacts(scene);
+  EventStepper stepper(scene.bodies, contacts, {.gravity = scene.gravity});
+  State state = scene.state;
+  EventReport events;
+  const double ground = scene.state[kBall].x.z() - drop.height;
+  double now = 0.0;
+  for (int n = 1; n <= 5 && drop.apex(n) > kFewest; ++n) {
+    stepper.advance(state, drop.apex_time(n) - now, events);
+    now = drop.apex_time(n);
+    report.checks.push_back(absolute(
+        {.name = fmt::format("event-driven: apex {} above the plane", n),
+         .unit = "m",
+         .reason = "e^(2n) H; the flight is exact, the contact time is found to 1e-9 of the ball"},
+        state[kBall].x.z() - ground, drop.apex(n), 1e-6 * drop.apex(n)));
+  }
+  if (drop.e == 1.0) return;
+  const double rest = std::sqrt(2.0 * drop.height / drop.g) * (1.0 + drop.e) / (1.0 - drop.e);
+  state = scene.state;
+  stepper.advance(state, 1.01 * rest, events);
+  const bool rested = !events.events.empty() && events.events.back().kind == EventKind::kRest;
+  const double time = rested ? events.events.back().time + events.events.back().skipped_seconds
+                             : std::numeric_limits<double>::quiet_NaN();
+  report.checks.push_back(absolute(
+      {.name = "event-driven: infinitely many bounces end after",
+       .unit = "s",
+       .reason = "sqrt(2 H/g) (1 + e)/(1 - e); bounces below 5e-4 m/s are skipped, and their time "
+                 "is added"},
+      time, rest, 1e-6 * rest));
+}
+
 /// First apex at h, h/2, h/4, h/8.
 Table convergence(const Scene& scene, const Drop& drop, const RunOptions& options) {
   Table table;
@@ -186,6 +220,7 @@ void check_ball_drop(const Scene& scene, const RunOptions& options, SceneReport&
       check_rest(drop, scene, track, report);
     }
   });
+  if (options.signorini && drop.e > 0.0) check_events(scene, drop, report);
   if (options.bullet && drop.e > 0.0 && options.profile.name == "neutral") {
     const std::vector<double> apexes =
         apexes_of(run_theirs(scene, BulletProfile::bullet_default(), options), drop.height);

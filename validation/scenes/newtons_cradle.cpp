@@ -69,16 +69,15 @@ class Rows {
 };
 
 void check_law(const Scene& scene, const ContactSet& contacts, const std::string& name,
-               const ImpactSettings& settings, const Speeds& exact, Rows& rows,
-               SceneReport& report) {
+               const ImpactSettings& settings, const Speeds& exact, const std::string& form,
+               Rows& rows, SceneReport& report) {
   const ImpactOutcome outcome = impact(scene, contacts, settings);
   const Speeds speeds = speeds_of(scene, outcome);
   rows.add("Signorini: " + name, speeds, describe_status(outcome.report));
   const std::string reason = "four contacts, solved to 1e-12 (1 + |q|), |q| = 2";
-  report.checks.push_back(absolute({.name = name + ": speeds, distance from the Newton closed form",
-                                    .unit = "m/s",
-                                    .reason = reason},
-                                   distance(speeds, exact), 0.0, 3e-12));
+  report.checks.push_back(absolute(
+      {.name = name + ": speeds, distance from the " + form, .unit = "m/s", .reason = reason},
+      distance(speeds, exact), 0.0, 3e-12));
   report.checks.push_back(absolute({.name = name + ": energy, relative change",
                                     .reference = "conservation law",
                                     .unit = "1",
@@ -96,12 +95,17 @@ void check_newtons_cradle(const Scene& scene, const RunOptions& options, SceneRe
   Rows rows;
   rows.add("Newton law, closed form", exact, "");
   rows.add("steel balls (break-away)", break_away_speeds(scene.bodies.size(), v),
-           "takes a law with break-away");
+           "takes a law with break-away: the reflections");
   if (options.signorini) {
     const ContactSet contacts = touching_contacts(scene);
     check_law(scene, contacts, "Newton law", {.law = ImpactLaw::kNewton, .energy_safe = false},
-              exact, rows, report);
-    check_law(scene, contacts, "Newton law, energy-safe", {.law = ImpactLaw::kNewton}, exact, rows,
+              exact, "Newton closed form", rows, report);
+    check_law(scene, contacts, "Newton law, energy-safe", {.law = ImpactLaw::kNewton}, exact,
+              "Newton closed form", rows, report);
+    check_law(scene, contacts, "Poisson's law", {.law = ImpactLaw::kPoisson}, exact,
+              "Newton closed form", rows, report);
+    check_law(scene, contacts, "generalized reflections", {.law = ImpactLaw::kReflections},
+              break_away_speeds(scene.bodies.size(), v), "break-away (0, 0, 0, 0, v)", rows,
               report);
     const ImpactOutcome notes = impact(scene, contacts, {.law = ImpactLaw::kNotes});
     rows.add("Signorini: the notes' form, energy-safe", speeds_of(scene, notes),
