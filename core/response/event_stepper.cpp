@@ -229,9 +229,11 @@ class EventStepper::Run {
     return state;
   }
 
-  /// The middle's forces for a segment of this length. @return false if they were not found.
-  bool middle_loads(double length, std::vector<Wrench>& loads) {
+  /// The middle's forces for a segment of this length; lost: a contact that pushes is gone there.
+  /// @return false if they were not found.
+  bool middle_loads(double length, std::vector<Wrench>& loads, bool& lost) {
     loads = support_.loads;
+    lost = false;
     if (support_.contacts.empty()) {
       return true;
     }
@@ -241,10 +243,13 @@ class EventStepper::Run {
     if (!support(halfway, middle)) {
       return false;
     }
-    // A contact that is not found midway (its gap has grown beyond touching) keeps its first force.
-    if (middle.contacts.size() == support_.contacts.size()) {
-      loads = middle.loads;
-    }
+    // A contact that pushes at the start and is gone midway was lost by going too far straight on.
+    lost = std::any_of(support_.contacts.begin(), support_.contacts.end(), [&](const Contact& one) {
+      return pushes(one, support_) &&
+             !std::any_of(middle.contacts.begin(), middle.contacts.end(),
+                          [&](const Contact& other) { return same(one, other); });
+    });
+    loads = middle.loads;
     return true;
   }
 
@@ -274,10 +279,11 @@ class EventStepper::Run {
     double length = std::min({duration_ - report_.time, next_length_, settings_.longest_segment});
     std::vector<Wrench> loads;
     for (;;) {
-      if (!middle_loads(length, loads)) {
+      bool lost = false;
+      if (!middle_loads(length, loads, lost)) {
         return false;
       }
-      const double error = relative_error(length, loads);
+      const double error = lost ? 1e3 : relative_error(length, loads);
       if (error > 1.0 && length > kShortest) {
         length *= std::clamp(0.9 / std::cbrt(error), 0.1, 0.7);
         continue;
