@@ -8,8 +8,10 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Proximal weight of the linear solves, of a unit diagonal: they converge by the factor
-// delta / (delta + smallest eigenvalue that matters).
+// delta / (delta + smallest eigenvalue that matters). Where the set is right and they do not (large
+// mass ratios) the weight falls by this factor, once.
 constexpr double kProximal = 1e-9;
+constexpr double kLeastProximal = 1e-12;
 constexpr int kMostProximalSteps = 12;
 // Rounds of seek_inside(), and what a round must leave of the largest violation to go on.
 constexpr int kMostRounds = 15;
@@ -28,12 +30,13 @@ double ActiveSetNewton::improve(ScaledProblem& problem, Vector& x, std::vector<R
   const Index n = problem.size();
   e_.resize(n);
   double residual = kInfinity;
+  double proximal = kProximal;
   double most_wrong = limits.wrong_share * static_cast<double>(n) + kFew;
   for (int k = 0; k < limits.factorizations; ++k) {
     for (Index i = 0; i < n; ++i) {
       e_[i] = state[i] == RowState::kBetween ? 0.0 : kInfinity;
     }
-    if (!problem.system().factor(e_, kProximal)) {
+    if (!problem.system().factor(e_, proximal)) {
       return kInfinity;
     }
     solve_on_set(problem, x, state);
@@ -51,6 +54,10 @@ double ActiveSetNewton::improve(ScaledProblem& problem, Vector& x, std::vector<R
       return residual;
     }
     const int wrong = correct_set(problem, x, state);
+    if (wrong == 0 && proximal > kLeastProximal) {
+      proximal = kLeastProximal;
+      continue;
+    }
     if (wrong == 0 || wrong > most_wrong) {
       return residual;  // nothing to correct, or no progress
     }

@@ -89,6 +89,31 @@ class Barrier {
   double count_ = 0.0;
 };
 
+/// Whether the iterates still go anywhere, by the average product mu of slacks and multipliers and
+/// by the largest |r_i|.
+class Progress {
+ public:
+  /// @return false if nothing has fallen for too long, or only rounding is left to move the iterate
+  [[nodiscard]] bool goes_on(double mu, double infeasibility, bool has_barriers) {
+    constexpr int kMostWithout = 25;  // far starts rise before they fall
+    // Where mu has fallen so far, products of slacks and multipliers are below the rounding of
+    // their largest.
+    constexpr double kLeastMu = 1e-24;
+    const bool falls = mu < 0.9 * least_mu_ || infeasibility < 0.9 * least_infeasibility_;
+    without_ = falls ? 0 : without_ + 1;
+    least_mu_ = std::min(mu, least_mu_);
+    most_mu_ = std::max(mu, most_mu_);
+    least_infeasibility_ = std::min(infeasibility, least_infeasibility_);
+    return without_ <= kMostWithout && !(has_barriers && !(mu > kLeastMu * most_mu_));
+  }
+
+ private:
+  double least_mu_ = kInfinity;
+  double most_mu_ = 0.0;
+  double least_infeasibility_ = kInfinity;
+  int without_ = 0;
+};
+
 }  // namespace
 
 /// The problem in scaled coordinates and everything that changes during a solve.
@@ -122,9 +147,9 @@ class InteriorPoint::Workspace {
  private:
   [[nodiscard]] Status run(const Vector* warm_start);
   [[nodiscard]] bool start_warm(const Vector& warm_start);
-  void start_cold();
+  void start_cold(double size_of_x);
   void set_barriers();
-  [[nodiscard]] Status interior_point();
+  [[nodiscard]] Status interior_point(bool cold);
   [[nodiscard]] Status predict_and_correct(double mu);
   [[nodiscard]] bool newton_direction();
   [[nodiscard]] bool factor();
@@ -135,6 +160,7 @@ class InteriorPoint::Workspace {
   InteriorPointSettings settings_;
   const Deadline* deadline_ = nullptr;
   bool body_space_ = false;
+  bool forces_add_up_ = false;  // contacts of bodies, and nothing that limits a force
   BodySpaceSystem bodies_;
   std::unique_ptr<ShiftedSystem> given_;
   ScaledProblem problem_;
@@ -145,6 +171,7 @@ class InteriorPoint::Workspace {
   Vector x_, gradient_, r_;  // r = A x + g - y + v
   Barrier lower_, upper_;    // x - lower and y, upper - x and v
   double proximal_ = 0.0;
+  double step_ = 1.0;  // the longest that kept the last iterate inside
   Vector e_, h_, dx_, kept_dx_, bound_, trial_;
   std::vector<RowState> guess_, last_guess_, tried_;
   int next_crossing_ = 0;
@@ -156,6 +183,7 @@ class InteriorPoint::Workspace {
 Status InteriorPoint::Workspace::run(const Vector* warm_start) {
   constexpr int kMostOfLastPolish = 60;
   set_barriers();
+  forces_add_up_ = body_space_ && !problem_.has_upper();
   tried_.clear();
   next_crossing_ = 0;
   crossing_wait_ = 1;
@@ -171,10 +199,7 @@ Status InteriorPoint::Workspace::run(const Vector* warm_start) {
   if (warm_start != nullptr && start_warm(*warm_start)) {
     return Status::kStalled;
   }
-  if (warm_start == nullptr) {
-    start_cold();
-  }
-  const Status ending = interior_point();
+  const Status ending = interior_point(warm_start == nullptr);
   if (problem_.best_residual() > settings_.tolerance) {
     polish(kMostOfLastPolish);
   }
@@ -191,7 +216,10 @@ void InteriorPoint::Workspace::set_barriers() {
   upper_.set(bound_);
 }
 
-void InteriorPoint::Workspace::start_cold() {
+/// x of the size of g times size_of_x, away from its bounds. Forces add up from contact to contact:
+/// their size is not known beforehand (see interior_point()).
+void InteriorPoint::Workspace::start_cold(double size_of_x) {
+  const double size_of_y = forces_add_up_ ? 0.3 : 1.0;
   const Index n = problem_.size();
   const Vector& g = problem_.g();
   const double size = std::max(g.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
@@ -206,20 +234,22 @@ void InteriorPoint::Workspace::start_cold() {
     const bool below = lower_.has()[i] != 0.0;
     const bool above = upper_.has()[i] != 0.0;
     if (below && above) {
-      const double inside = std::min(margin, 0.25 * (u - l));
-      x_[i] = std::clamp(-g[i], l + inside, u - inside);
+      const double inside = std::min(size_of_x * margin, 0.25 * (u - l));
+      x_[i] = std::clamp(-size_of_x * g[i], l + inside, u - inside);
     } else if (below) {
-      x_[i] = l + std::max(-g[i], 0.0) + margin;
+      x_[i] = l + size_of_x * (std::max(-g[i], 0.0) + margin);
     } else if (above) {
-      x_[i] = u - std::max(g[i], 0.0) - margin;
+      x_[i] = u - size_of_x * (std::max(g[i], 0.0) + margin);
+    } else {
+      x_[i] = l == u ? l : 0.0;
     }
     if (below) {
       lower_.s[i] = x_[i] - l;
-      lower_.y[i] = std::max(g[i], margin);
+      lower_.y[i] = size_of_y * std::max(g[i], margin);
     }
     if (above) {
       upper_.s[i] = u - x_[i];
-      upper_.y[i] = std::max(-g[i], margin);
+      upper_.y[i] = size_of_y * std::max(-g[i], margin);
     }
   }
 }
@@ -372,8 +402,8 @@ Status InteriorPoint::Workspace::predict_and_correct(double mu) {
       }
     }
   }
-  const double longest = longest_step();
-  const double step = longest < 1.0 || barriers > 0.0 ? settings_.step_fraction * longest : 1.0;
+  step_ = longest_step();
+  const double step = step_ < 1.0 || barriers > 0.0 ? settings_.step_fraction * step_ : 1.0;
   x_ += step * dx_;
   lower_.move(step);
   if (has_upper) {
@@ -382,20 +412,25 @@ Status InteriorPoint::Workspace::predict_and_correct(double mu) {
   return Status::kNotRun;
 }
 
-Status InteriorPoint::Workspace::interior_point() {
+/// From the start at hand, or from a cold one. Where the first step all but stands still the next
+/// start has an x a hundred times as large, as long as that lengthens the step.
+Status InteriorPoint::Workspace::interior_point(bool cold) {
   const int most = settings_.max_iterations >= 0 ? settings_.max_iterations
                                                  : InteriorPointSettings::kDefaultIterations;
   const double barriers = lower_.count() + upper_.count();
-  // Where mu has fallen so far, products of slacks and multipliers are below the rounding of their
-  // largest: only rounding is left to move the iterate.
-  constexpr double kLeastMu = 1e-24;
-  double least_mu = kInfinity;
-  double most_mu = 0.0;
-  double least_infeasibility = kInfinity;
-  constexpr int kMostWithoutProgress = 25;  // far starts rise before they fall
+  constexpr double kFirstSize = 10.0;
+  constexpr double kLargestSize = 1e9;
+  constexpr double kSizeGrows = 100.0;
+  constexpr double kShortStep = 0.1;
   constexpr double kEarlyPolish = 1e-6;
   constexpr int kMostOfEarlyPolish = 6;
-  int without_progress = 0;
+  double size_of_x = forces_add_up_ ? kFirstSize : 1.0;
+  double last_first_step = 0.0;
+  if (cold) {
+    start_cold(size_of_x);
+  }
+  bool may_grow = cold && forces_add_up_;
+  Progress progress;
   for (;; ++iterations_) {
     problem_.gradient(x_, gradient_);
     const double residual = problem_.consider(x_, gradient_);
@@ -428,16 +463,19 @@ Status InteriorPoint::Workspace::interior_point() {
     }
     mu = barriers > 0.0 ? mu / barriers : 0.0;
     const double infeasibility = r_.cwiseAbs().maxCoeff();
-    const bool progress = mu < 0.9 * least_mu || infeasibility < 0.9 * least_infeasibility;
-    without_progress = progress ? 0 : without_progress + 1;
-    least_mu = std::min(mu, least_mu);
-    most_mu = std::max(mu, most_mu);
-    least_infeasibility = std::min(infeasibility, least_infeasibility);
-    if (without_progress > kMostWithoutProgress || (barriers > 0.0 && !(mu > kLeastMu * most_mu))) {
+    if (!progress.goes_on(mu, infeasibility, barriers > 0.0)) {
       return Status::kStalled;
     }
     if (const Status status = predict_and_correct(mu); status != Status::kNotRun) {
       return status;
+    }
+    may_grow = may_grow && step_ < kShortStep && size_of_x < kLargestSize;
+    if (may_grow) {
+      may_grow = step_ > last_first_step;
+      last_first_step = step_;
+      size_of_x *= may_grow ? kSizeGrows : 1.0 / kSizeGrows;
+      start_cold(size_of_x);
+      progress = {};
     }
   }
 }
