@@ -24,7 +24,7 @@ configure_and_build() {
   shift
   if [ ! -f "build/$preset/build.ninja" ]; then
     step "configure $preset"
-    cmake --preset "$preset"
+    cmake --preset "$preset" -DSIGNORINI_PRECOMPILE=ON
   fi
   step "build $preset"
   cmake --build "build/$preset" -j "$jobs" ${1:+--target "$@"}
