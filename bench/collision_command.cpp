@@ -3,6 +3,7 @@
 #include <signorini/lcp/io/whole_file.h>
 
 #include "bench/broad_phase_study.h"
+#include "bench/contact_study.h"
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -28,12 +29,22 @@ void write_csv(const std::string& folder, const std::string& name, const std::st
 }  // namespace
 
 struct CollisionCommand::Options {
+  ContactStudyOptions contacts;
   BroadPhaseOptions broad_phase;
   std::string out;
 };
 
 CollisionCommand::CollisionCommand(CLI::App& app) : options_(std::make_unique<Options>()) {
   Options& o = *options_;
+  contacts_ = app.add_subcommand(
+      "contacts",
+      "Distances and contact sets of every pair of shapes at random and near-degenerate "
+      "poses, judged by their properties");
+  contacts_->add_option("--poses", o.contacts.poses, "Of each pair")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  contacts_->add_option("--pair", o.contacts.pair, "One pair alone, such as sphere-box");
+  contacts_->add_option("--seed", o.contacts.seed, "Of the random numbers")->capture_default_str();
   broad_phase_ = app.add_subcommand(
       "broad-phase", "Moving boxes: our broad phase beside Bullet's, FCL's and Boost's");
   broad_phase_->add_option("--bodies", o.broad_phase.bodies, "How many boxes")
@@ -42,7 +53,7 @@ CollisionCommand::CollisionCommand(CLI::App& app) : options_(std::make_unique<Op
   broad_phase_->add_option("--steps", o.broad_phase.steps, "Of each motion")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  for (CLI::App* study : {broad_phase_}) {
+  for (CLI::App* study : {contacts_, broad_phase_}) {
     study->add_option("--out", o.out, "Folder for the CSV, made if absent (default: print only)");
   }
 }
@@ -50,12 +61,17 @@ CollisionCommand::CollisionCommand(CLI::App& app) : options_(std::make_unique<Op
 CollisionCommand::~CollisionCommand() = default;
 
 bool CollisionCommand::is_asked() const {
-  return broad_phase_->parsed();
+  return contacts_->parsed() || broad_phase_->parsed();
 }
 
 int CollisionCommand::run() const {
   if (!options_->out.empty()) {
     std::filesystem::create_directories(options_->out);
+  }
+  if (contacts_->parsed()) {
+    const ContactStudyReport report = run_contact_study(options_->contacts, std::cout);
+    write_csv(options_->out, "contacts", report.to_csv());
+    return report.passed() ? kClaimsHold : kWrongClaim;
   }
   const BroadPhaseReport report = run_broad_phase_study(options_->broad_phase, std::cout);
   write_csv(options_->out, "broad-phase", report.to_csv());

@@ -5,7 +5,7 @@
 
 namespace signorini::bench {
 
-/// The studies of collision detection: `signorini-bench broad-phase`.
+/// The studies of collision detection: `signorini-bench contacts` and `broad-phase`.
 class CollisionCommand {
  public:
   explicit CollisionCommand(CLI::App& app);
@@ -18,6 +18,7 @@ class CollisionCommand {
  private:
   struct Options;
   std::unique_ptr<Options> options_;
+  CLI::App* contacts_;
   CLI::App* broad_phase_;
 };
 

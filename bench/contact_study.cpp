@@ -1,0 +1,131 @@
+#include "bench/contact_study.h"
+
+#include <signorini/collision/pair_query.h>
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <numeric>
+#include <ostream>
+#include <stdexcept>
+
+namespace signorini::bench {
+namespace {
+
+using collision::testing::PlacedPair;
+using collision::testing::Placement;
+using collision::testing::Random;
+using collision::testing::ShapeKind;
+
+struct Kind {
+  ShapeKind kind;
+  const char* name;
+};
+constexpr Kind kKinds[] = {
+    {ShapeKind::kSphere, "sphere"},
+    {ShapeKind::kBox, "box"},
+    {ShapeKind::kHalfSpace, "half-space"},
+};
+
+PlacedPair pose_of(Random& random, const Kind& a, const Kind& b, long number) {
+  constexpr Placement kPlacements[] = {Placement::kAnywhere, Placement::kAligned,
+                                       Placement::kNearlyAligned};
+  return collision::testing::random_pair(random, a.kind, b.kind, kPlacements[number % 3]);
+}
+
+ContactStudyRow run_pair(const Kind& a, const Kind& b, const ContactStudyOptions& options) {
+  ContactStudyRow row;
+  row.pair = fmt::format("{}-{}", a.name, b.name);
+  Random random(options.seed);
+  for (long k = 0; k < options.poses; ++k) {
+    PlacedPair pair = pose_of(random, a, b, k);
+    if (k % 2 == 1) {
+      pair = kissing(pair, random);
+      ++row.kissing;
+    }
+    const double margin =
+        k % 4 < 2 ? 0.0 : pair.size * collision::testing::log_uniform(random, -6.0, 0.0);
+    const PairVerdict verdict = judge_pair(pair, margin, random);
+    ++row.poses;
+    row.overlapping +=
+        collision::signed_distance(pair.a, pair.pose_a, pair.b, pair.pose_b) <= 0.0 ? 1 : 0;
+    for (int p = 0; p < kPairProperties; ++p) {
+      row.worst[p] = std::max(row.worst[p], verdict[p]);
+      if (verdict[p] > 1.0) {
+        ++row.wrong[p];
+        if (row.first_wrong.empty()) {
+          row.first_wrong = fmt::format("pose {}: {} off by {:.3g} of what is allowed\n{}", k,
+                                        to_string(static_cast<PairProperty>(p)), verdict[p],
+                                        collision::testing::describe(pair));
+        }
+      }
+    }
+  }
+  return row;
+}
+
+void print(const ContactStudyRow& row, std::ostream& out) {
+  out << fmt::format("{:<22}{:>9}{:>9}{:>9}", row.pair, row.poses, row.kissing, row.overlapping);
+  for (int p = 0; p < kPairProperties; ++p) {
+    out << fmt::format("{:>10}", row.wrong[p]);
+  }
+  out << fmt::format("{:>8.2f}\n", *std::max_element(row.worst.begin(), row.worst.end()));
+  if (!row.first_wrong.empty()) {
+    out << "  first: " << row.first_wrong;
+  }
+  out.flush();
+}
+
+}  // namespace
+
+bool ContactStudyReport::passed() const {
+  return std::all_of(rows.begin(), rows.end(), [](const ContactStudyRow& row) {
+    return std::accumulate(row.wrong.begin(), row.wrong.end(), 0L) == 0;
+  });
+}
+
+std::string ContactStudyReport::to_csv() const {
+  std::string csv = "pair,poses,kissing,overlapping";
+  for (int p = 0; p < kPairProperties; ++p) {
+    csv += fmt::format(",wrong: {0},worst: {0}", to_string(static_cast<PairProperty>(p)));
+  }
+  csv += "\n";
+  for (const ContactStudyRow& row : rows) {
+    csv += fmt::format("{},{},{},{}", row.pair, row.poses, row.kissing, row.overlapping);
+    for (int p = 0; p < kPairProperties; ++p) {
+      csv += fmt::format(",{},{:.4g}", row.wrong[p], row.worst[p]);
+    }
+    csv += "\n";
+  }
+  return csv;
+}
+
+ContactStudyReport run_contact_study(const ContactStudyOptions& options, std::ostream& out) {
+  ContactStudyReport report;
+  out << fmt::format(
+      "poses at which a property was wrong; worst: as a fraction of what is allowed\n"
+      "{:<22}{:>9}{:>9}{:>9}",
+      "pair", "poses", "kissing", "overlap");
+  for (int p = 0; p < kPairProperties; ++p) {
+    out << fmt::format("{:>10}", to_string(static_cast<PairProperty>(p)));
+  }
+  out << fmt::format("{:>8}\n", "worst");
+  std::string known;
+  for (std::size_t i = 0; i < std::size(kKinds); ++i) {
+    for (std::size_t j = i; j < std::size(kKinds); ++j) {
+      const std::string name = fmt::format("{}-{}", kKinds[i].name, kKinds[j].name);
+      known += (known.empty() ? "" : ", ") + name;
+      const bool both_planes = kKinds[i].kind == ShapeKind::kHalfSpace;
+      if (both_planes || (!options.pair.empty() && options.pair != name)) {
+        continue;
+      }
+      report.rows.push_back(run_pair(kKinds[i], kKinds[j], options));
+      print(report.rows.back(), out);
+    }
+  }
+  if (report.rows.empty()) {
+    throw std::invalid_argument("pair: must be one of " + known + ", got " + options.pair);
+  }
+  return report;
+}
+
+}  // namespace signorini::bench

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "tests/collision/random_pairs.h"
+
+#include <array>
+#include <string_view>
+
+namespace signorini::bench {
+
+/// What is asked of the queries of one pair at one pose.
+enum class PairProperty : unsigned char {
+  kNoNaN,          ///< nothing that is returned is NaN, every refusal is a std::invalid_argument
+  kUnitNormal,     ///< ||N| - 1| <= 1e-12
+  kPoints,         ///< P_A - P_B = gap N, P_A in A, P_B in B
+  kNothingMissed,  ///< a contact where the distance is at most the margin
+  kNothingBeyond,  ///< no contact where it is more; no gap above the margin
+  kCertified,      ///< the least gap is the shapes' separation along N, by support functions alone
+  kNoBetter,       ///< no direction of many tried parts the shapes further than the distance says
+  kParts,          ///< moved by -gap along N the shapes touch
+  kTest,           ///< test = (distance <= 0)
+  kExchange,       ///< A and B exchanged: the same distance
+  kRigidMotion,    ///< both carried along: the same distance
+};
+inline constexpr int kPairProperties = 11;
+[[nodiscard]] std::string_view to_string(PairProperty property);
+
+/// By property: how far (m) the answer is off, relative to what is allowed; more than 1 is wrong.
+using PairVerdict = std::array<double, kPairProperties>;
+
+/// Judges distance, test and find of one pair by properties that need no second implementation:
+/// for any unit n, s(n) = -h_A(-n) - h_B(n) <= d by the support functions h, and d <= |P_A - P_B|
+/// for any two points of the shapes, so that s(N) = gap = N.(P_A - P_B) proves d where they are
+/// apart. Where they overlap d = max s(n): N itself and 40 directions around it and at random are
+/// tried.
+///
+/// Allowed: 2e-6 of the smaller size (two boxes: the tolerance by which faces are preferred,
+/// box_separation.h) or 1e-9 (other pairs), and 200 roundings of the pair's numbers.
+[[nodiscard]] PairVerdict judge_pair(const collision::testing::PlacedPair& pair, double margin,
+                                     collision::testing::Random& random);
+
+/// The pair moved along its normal until it kisses: the gap is 0, or up to 1e-9 of the size from
+/// it, or a few roundings. Unchanged where it has no finite distance.
+[[nodiscard]] collision::testing::PlacedPair kissing(const collision::testing::PlacedPair& pair,
+                                                     collision::testing::Random& random);
+
+}  // namespace signorini::bench
