@@ -4,6 +4,7 @@
 
 #include "bench/broad_phase_study.h"
 #include "bench/contact_study.h"
+#include "bench/narrow_phase_study.h"
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -31,6 +32,7 @@ void write_csv(const std::string& folder, const std::string& name, const std::st
 struct CollisionCommand::Options {
   ContactStudyOptions contacts;
   BroadPhaseOptions broad_phase;
+  NarrowPhaseOptions narrow_phase;
   std::string out;
 };
 
@@ -53,7 +55,17 @@ CollisionCommand::CollisionCommand(CLI::App& app) : options_(std::make_unique<Op
   broad_phase_->add_option("--steps", o.broad_phase.steps, "Of each motion")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  for (CLI::App* study : {contacts_, broad_phase_}) {
+  narrow_phase_ = app.add_subcommand(
+      "narrow-phase",
+      "Contact sets of touching shapes: time and valid points beside Bullet's and FCL's");
+  narrow_phase_->add_option("--poses", o.narrow_phase.poses, "Of each pair")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  narrow_phase_
+      ->add_option("--repeats", o.narrow_phase.repeats, "Of all poses; the least time counts")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  for (CLI::App* study : {contacts_, broad_phase_, narrow_phase_}) {
     study->add_option("--out", o.out, "Folder for the CSV, made if absent (default: print only)");
   }
 }
@@ -61,7 +73,7 @@ CollisionCommand::CollisionCommand(CLI::App& app) : options_(std::make_unique<Op
 CollisionCommand::~CollisionCommand() = default;
 
 bool CollisionCommand::is_asked() const {
-  return contacts_->parsed() || broad_phase_->parsed();
+  return contacts_->parsed() || broad_phase_->parsed() || narrow_phase_->parsed();
 }
 
 int CollisionCommand::run() const {
@@ -72,6 +84,11 @@ int CollisionCommand::run() const {
     const ContactStudyReport report = run_contact_study(options_->contacts, std::cout);
     write_csv(options_->out, "contacts", report.to_csv());
     return report.passed() ? kClaimsHold : kWrongClaim;
+  }
+  if (narrow_phase_->parsed()) {
+    const NarrowPhaseReport report = run_narrow_phase_study(options_->narrow_phase, std::cout);
+    write_csv(options_->out, "narrow-phase", report.to_csv());
+    return kClaimsHold;
   }
   const BroadPhaseReport report = run_broad_phase_study(options_->broad_phase, std::cout);
   write_csv(options_->out, "broad-phase", report.to_csv());

@@ -5,7 +5,8 @@
 
 namespace signorini::bench {
 
-/// The studies of collision detection: `signorini-bench contacts` and `broad-phase`.
+/// The studies of collision detection: `signorini-bench contacts`, `broad-phase` and
+/// `narrow-phase`.
 class CollisionCommand {
  public:
   explicit CollisionCommand(CLI::App& app);
@@ -20,6 +21,7 @@ class CollisionCommand {
   std::unique_ptr<Options> options_;
   CLI::App* contacts_;
   CLI::App* broad_phase_;
+  CLI::App* narrow_phase_;
 };
 
 }  // namespace signorini::bench

@@ -73,6 +73,15 @@ ClippedPoint crossing(const Corner& from, const ClippedPoint& to, const SidePlan
   return result;
 }
 
+bool is_inside(const Polygon& polygon, const SidePlane& plane) {
+  for (int i = 0; i < polygon.count; ++i) {
+    if (plane.excess(polygon.corners[i].point) > 0.0) {
+      return false;
+    }
+  }
+  return true;
+}
+
 Polygon clip(const Polygon& polygon, const SidePlane& plane, const BoxSides& incident_face) {
   const Side along_plane{false, plane.edge};
   Polygon result;
@@ -115,8 +124,10 @@ ClippedPolygon clip_face(const PlacedBox& incident, const BoxFace& incident_face
     for (const int sign : {-1, 1}) {
       BoxSides edge = reference_face.sides();
       edge[axis] = sign;
-      polygon = clip(polygon, {axis == v, sign, reference.half[axis] + slack, edge},
-                     incident_face.sides());
+      const SidePlane plane{axis == v, sign, reference.half[axis] + slack, edge};
+      if (!is_inside(polygon, plane)) {
+        polygon = clip(polygon, plane, incident_face.sides());
+      }
     }
   }
 

@@ -1,5 +1,6 @@
 #include "bench/broad_phase_study.h"
 #include "bench/contact_study.h"
+#include "bench/narrow_phase_study.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -41,6 +42,17 @@ TEST(PairChecks, SeeARefusal) {
   EXPECT_LE(worst(judge_pair(pair, 0.1, random)), 1.0);
   pair.pose_b.orientation = Quat(2.0, 0.0, 0.0, 0.0);  // refused by the queries
   EXPECT_GT(worst(judge_pair(pair, 0.1, random)), 1.0);
+}
+
+TEST(NarrowPhaseStudy, AllOurPointsAreValid) {
+  std::ostringstream out;
+  const NarrowPhaseReport report = run_narrow_phase_study({.poses = 50, .repeats = 1}, out);
+  for (const NarrowPhaseRow& row : report.rows) {
+    if (row.name == "signorini") {
+      EXPECT_GE(row.points, 1.0) << row.pair;
+      EXPECT_NEAR(row.valid, row.points, 1e-9) << row.pair;
+    }
+  }
 }
 
 TEST(BroadPhaseStudy, FindsWhatThePlainSweepFinds) {
