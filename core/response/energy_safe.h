@@ -16,11 +16,12 @@ namespace signorini {
 /// The energy gain along f(theta) = f_c + theta (f_e - f_c) (design, section 4.4):
 ///
 ///     E(theta) = plastic + slope theta + 1/2 curvature theta^2,
-///     plastic   = -1/2 f_c.A f_c + f_c.d'_c   <= 0,    d'_c = A f_c + d'-  (f_c.d'_c = 0 but for
-///     slope     = (f_e - f_c).d'_c            >= 0 without friction,     rounding)
+///     plastic   = -1/2 f_c.A f_c + f_c.d'_c   <= 0,    d'_c = A f_c + d'-
+///     slope     = (f_e - f_c).d'_c            (>= 0 without friction)
 ///     curvature = (f_e - f_c).A (f_e - f_c)   >= 0,
 ///
-/// each a sum without cancellation: the A products are |J^T f|^2 in M^-1. J.
+/// (without friction f_c.d'_c = 0 but for rounding), each a sum without cancellation: the A
+/// products are |J^T f|^2 in M^-1. J.
 struct EnergyLine {
   double plastic = 0.0;
   double slope = 0.0;
