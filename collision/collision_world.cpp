@@ -12,31 +12,21 @@
 namespace signorini::collision {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// Half the extents of the shape's axis-aligned bounds about its frame's origin.
-struct HalfExtents {
-  const Quat& orientation;
-
-  Vec3 operator()(const Sphere& sphere) const { return Vec3::Constant(sphere.radius); }
-  Vec3 operator()(const Box& box) const {
-    return orientation.toRotationMatrix().cwiseAbs() * box.half_extents;
-  }
-  Vec3 operator()(const HalfSpace&) const { return Vec3::Constant(kInfinity); }
-};
-
-/// Widened by some roundings of its numbers, so that shapes that touch are never passed over.
-Bounds around(const Vec3& centre, const Vec3& half) {
+/// Widened by a margin and by some roundings of its numbers, so that shapes that touch are never
+/// passed over.
+Bounds widened(const Bounds& tight, double margin) {
   constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
-  const Vec3 reach = half + kRounding * (half + centre.cwiseAbs());
-  return {centre - reach, centre + reach};
+  const Vec3 far = tight.low.cwiseAbs().cwiseMax(tight.high.cwiseAbs());
+  const Vec3 reach = Vec3::Constant(margin) + kRounding * (far + Vec3::Constant(margin));
+  return {tight.low - reach, tight.high + reach};
 }
 
 /// Everywhere that a collider can be in [0, duration].
 Bounds swept_bounds(const Collider& collider, const Motion& motion, double duration) {
   const SpeedBound speed = motion.speed_bound(0.0, duration);
   const double reach = bounding_radius(collider.shape, collider.local);
-  return around(motion.pose(0.0).position, Vec3::Constant(reach + speed.linear * duration));
+  const Vec3 centre = motion.pose(0.0).position;
+  return widened({centre, centre}, reach + speed.linear * duration);
 }
 
 void check_finder_input(const std::string& what, std::size_t given, std::size_t bodies,
@@ -102,9 +92,8 @@ void CollisionWorld::find(const State& state, double margin, ContactSet& contact
   bounds_.clear();
   for (const Collider& collider : colliders_) {
     const Pose pose = state[collider.body].pose() * collider.local;
-    const Vec3 half = std::visit(HalfExtents{pose.orientation}, collider.shape);
     poses_.push_back(pose);
-    bounds_.push_back(around(pose.position, half + Vec3::Constant(0.5 * margin)));
+    bounds_.push_back(widened(bounds(collider.shape, pose), 0.5 * margin));
   }
   broad_phase_.find(bounds_, is_immovable_, pairs_);
 

@@ -1,4 +1,6 @@
 #include <signorini/collision/box_box.h>
+#include <signorini/collision/capsule_pairs.h>
+#include <signorini/collision/convex_pairs.h>
 #include <signorini/collision/half_space_pairs.h>
 #include <signorini/collision/pair_query.h>
 #include <signorini/collision/sphere_pairs.h>

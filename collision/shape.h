@@ -1,10 +1,12 @@
 #pragma once
 
+#include <signorini/collision/bounds.h>
 #include <signorini/collision/pair_filter.h>
 #include <signorini/core/model/body.h>
 #include <signorini/core/model/material.h>
 #include <signorini/core/model/types.h>
 
+#include <memory>
 #include <string>
 #include <variant>
 
@@ -20,10 +22,40 @@ struct Box {
   Vec3 half_extents = Vec3::Constant(0.5);  ///< m, each > 0
 };
 
+/// All points within radius of the segment from (0, 0, -half_length) to (0, 0, half_length).
+struct Capsule {
+  double radius = 0.5;       ///< m, > 0
+  double half_length = 0.5;  ///< of the segment, m, > 0
+};
+
+/// x^2 + y^2 <= radius^2, |z| <= half_length.
+struct Cylinder {
+  double radius = 0.5;       ///< m, > 0
+  double half_length = 0.5;  ///< m, > 0
+};
+
+/// Base: the disc of this radius in z = -half_height. Apex: (0, 0, half_height).
+struct Cone {
+  double radius = 0.5;       ///< m, > 0
+  double half_height = 0.5;  ///< m, > 0
+};
+
+/// (x/a)^2 + (y/b)^2 + (z/c)^2 <= 1.
+struct Ellipsoid {
+  Vec3 radii = Vec3::Constant(0.5);  ///< (a, b, c), m, each > 0
+};
+
+struct HullData;
+
+/// A convex polyhedron: made by make_hull() (hull.h) or hull_of_points() (hull_builder.h).
+struct ConvexHull {
+  std::shared_ptr<const HullData> data;  ///< not null
+};
+
 /// z <= 0 in its frame: the surface is the plane z = 0, the outward normal +z.
 struct HalfSpace {};
 
-using Shape = std::variant<Sphere, Box, HalfSpace>;
+using Shape = std::variant<Sphere, Box, Capsule, Cylinder, Cone, Ellipsoid, ConvexHull, HalfSpace>;
 
 /// A shape fixed to a body.
 struct Collider {
@@ -43,22 +75,33 @@ void validate(const Pose& pose);
 /// @throws std::invalid_argument naming the collider, the field, its value and the bound.
 void validate(const Collider& collider, int body_count);
 
-/// Mass and inertia about the centre of mass, shape axes, of a solid of uniform density.
+/// Mass, centre of mass, and inertia about it along the shape's axes, of a solid of uniform
+/// density.
 struct MassProperties {
-  double mass;   ///< kg
-  Mat3 inertia;  ///< kg m^2
+  double mass;                 ///< kg
+  Mat3 inertia;                ///< kg m^2
+  Vec3 centre = Vec3::Zero();  ///< in the shape's frame, m; not its origin: cone, hull
 };
-/// Sphere: 2/5 m r^2. Box: m/12 (b^2 + c^2) with full edges.
+/// With m the mass and z the axis:
+/// - sphere: 2/5 m r^2; box: m/12 (b^2 + c^2) with full edges; ellipsoid: m/5 (b^2 + c^2);
+/// - cylinder: I_z = m/2 r^2, I_x = m (r^2/4 + h^2/3), h half its length;
+/// - capsule: the cylinder between the ends, and of both half balls together (mass m_s)
+///   I_z = 2/5 m_s r^2, I_x = m_s (2/5 r^2 + h^2 + 3/4 h r);
+/// - cone, height H: I_z = 3/10 m r^2, I_x = 3/80 m (4 r^2 + H^2), the centre H/4 over the base;
+/// - hull: exact integrals, see make_hull().
 /// @param density kg/m^3, finite and > 0
 /// @throws std::invalid_argument for a bad shape or density, and for a half-space, which has none.
 [[nodiscard]] MassProperties mass_properties(const Shape& shape, double density);
 
 /// The largest distance of a point of the shape from the origin of a frame in which the shape has
-/// this pose; +infinity for a half-space. m.
+/// this pose, m; for an ellipsoid off the origin a bound of it; +infinity for a half-space.
 [[nodiscard]] double bounding_radius(const Shape& shape, const Pose& pose);
 
 /// The support function: the largest n.x over the shape, m (n unit). +infinity for a half-space
 /// unless n is its normal to 1e-12.
 [[nodiscard]] double support(const Shape& shape, const Pose& pose, const Vec3& n);
+
+/// The smallest axis-aligned bounds, to rounding; infinite on every axis for a half-space.
+[[nodiscard]] Bounds bounds(const Shape& shape, const Pose& pose);
 
 }  // namespace signorini::collision

@@ -1,5 +1,7 @@
 #include "random_pairs.h"
 
+#include <signorini/collision/hull.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,6 +21,16 @@ Shape random_shape(Random& random, ShapeKind kind, double scale) {
       }
       return Box{scale * Vec3(log_uniform(random, -1.5, 0.0), log_uniform(random, -1.5, 0.0), 1.0)};
     }
+    case ShapeKind::kCapsule: return Capsule{scale * log_uniform(random, -1.5, 0.0), scale};
+    case ShapeKind::kCylinder:
+      return Cylinder{scale * log_uniform(random, -1.0, 0.0),
+                      scale * log_uniform(random, -1.0, 0.0)};
+    case ShapeKind::kCone:
+      return Cone{scale * log_uniform(random, -1.0, 0.0), scale * log_uniform(random, -1.0, 0.0)};
+    case ShapeKind::kEllipsoid:
+      return Ellipsoid{scale *
+                       Vec3(log_uniform(random, -1.0, 0.0), log_uniform(random, -1.0, 0.0), 1.0)};
+    case ShapeKind::kHull: return random_hull(random, scale);
     case ShapeKind::kHalfSpace: return HalfSpace{};
   }
   return Sphere{};
@@ -80,6 +92,39 @@ Quat random_orientation(Random& random) {
   return q.normalized();
 }
 
+ConvexHull random_hull(Random& random, double scale) {
+  std::vector<Vec3> points;
+  std::vector<std::vector<int>> faces;
+  const double kind = uniform(random, 0.0, 3.0);
+  if (kind < 1.0) {
+    points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    faces = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+  } else if (kind < 2.0) {
+    points = {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+    faces = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4},
+             {1, 0, 5}, {2, 1, 5}, {3, 2, 5}, {0, 3, 5}};
+  } else {
+    faces.resize(2);
+    for (int k = 0; k < 8; ++k) {
+      const double angle = k * M_PI_4;
+      points.emplace_back(std::cos(angle), std::sin(angle), -1.0);
+      points.emplace_back(std::cos(angle), std::sin(angle), 1.0);
+      faces[0].push_back(2 * (7 - k));
+      faces[1].push_back(2 * k + 1);
+      const int next = (k + 1) % 8;
+      faces.push_back({2 * k, 2 * next, 2 * next + 1, 2 * k + 1});
+    }
+  }
+  const Vec3 stretch(log_uniform(random, -1.0, 0.0), log_uniform(random, -1.0, 0.0), 1.0);
+  const Vec3 shift = 0.2 * random_direction(random);
+  const bool is_turned = uniform(random, 0.0, 1.0) < 0.5;
+  const Mat3 turn = is_turned ? random_orientation(random).toRotationMatrix() : Mat3::Identity();
+  for (Vec3& point : points) {
+    point = scale * (turn * stretch.cwiseProduct(point) + shift);
+  }
+  return make_hull(points, faces);
+}
+
 PlacedPair random_pair(Random& random, ShapeKind a, ShapeKind b, Placement placement) {
   PlacedPair pair;
   const bool plain = uniform(random, 0.0, 1.0) < 0.5;
@@ -125,14 +170,34 @@ PlacedPair carried(const PlacedPair& pair, const Pose& motion) {
 
 namespace {
 
-void describe(std::ostream& out, const Shape& shape, const Pose& pose) {
-  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-    out << "sphere " << sphere->radius;
-  } else if (const auto* box = std::get_if<Box>(&shape)) {
-    out << "box " << box->half_extents.transpose();
-  } else {
-    out << "half-space";
+struct Describe {
+  std::ostream& out;
+
+  void operator()(const Sphere& sphere) const { out << "sphere " << sphere.radius; }
+  void operator()(const Box& box) const { out << "box " << box.half_extents.transpose(); }
+  void operator()(const Capsule& capsule) const {
+    out << "capsule " << capsule.radius << " " << capsule.half_length;
   }
+  void operator()(const Cylinder& cylinder) const {
+    out << "cylinder " << cylinder.radius << " " << cylinder.half_length;
+  }
+  void operator()(const Cone& cone) const {
+    out << "cone " << cone.radius << " " << cone.half_height;
+  }
+  void operator()(const Ellipsoid& ellipsoid) const {
+    out << "ellipsoid " << ellipsoid.radii.transpose();
+  }
+  void operator()(const ConvexHull& hull) const {
+    out << "hull";
+    for (const Vec3& vertex : hull.data->vertices) {
+      out << " (" << vertex.transpose() << ")";
+    }
+  }
+  void operator()(const HalfSpace&) const { out << "half-space"; }
+};
+
+void describe(std::ostream& out, const Shape& shape, const Pose& pose) {
+  std::visit(Describe{out}, shape);
   out << " at " << pose.position.transpose() << ", q (x y z w) "
       << pose.orientation.coeffs().transpose() << "\n";
 }

@@ -9,7 +9,7 @@ namespace signorini::collision::testing {
 
 using Random = std::mt19937_64;
 
-enum class ShapeKind { kSphere, kBox, kHalfSpace };
+enum class ShapeKind { kSphere, kBox, kCapsule, kCylinder, kCone, kEllipsoid, kHull, kHalfSpace };
 
 /// How two shapes are put beside each other.
 enum class Placement {
@@ -32,6 +32,10 @@ double uniform(Random& random, double low, double high);
 double log_uniform(Random& random, double low_exponent, double high_exponent);
 Vec3 random_direction(Random& random);
 Quat random_orientation(Random& random);
+
+/// A tetrahedron, octahedron or prism of 8 sides, stretched and turned, its largest extent about
+/// `scale`, about a point near its origin.
+ConvexHull random_hull(Random& random, double scale);
 
 /// Sizes 1e-3 .. 1e3 (within a pair by up to 1000 different), coordinates up to 1e6.
 PlacedPair random_pair(Random& random, ShapeKind a, ShapeKind b, Placement placement);

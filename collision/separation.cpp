@@ -1,0 +1,340 @@
+#include <signorini/collision/gjk.h>
+#include <signorini/collision/penetration.h>
+#include <signorini/collision/separation.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace signorini::collision {
+namespace {
+
+using Kind = Stratum::Kind;
+using Normals = std::vector<Vec3>;
+
+/// Relative to the smaller size: nearer than this GJK's normal is not used alone.
+constexpr double kTouch = 1e-4;
+/// How near, relative, the polytope and GJK come before the pieces of surface take over.
+constexpr double kNear = 1e-8;
+constexpr double kGjkNear = 1e-12;
+/// The angles, radians, within which pieces of surface are tried: first, and again from there.
+constexpr double kAngles[] = {2e-2, 1e-5};
+constexpr int kNewtonSteps = 30;
+/// Relative to the smaller size: separations that count as equal.
+constexpr double kTie = 1e-9;
+/// Of the polytope's equally good directions those are tried that are this far (cosine) from each
+/// other.
+constexpr double kSameBasin = 0.999;
+constexpr std::size_t kMostBasins = 6;
+
+/// The constraint n.axis = slope of a line on one of the two shapes (the outward normal of A is
+/// -n).
+struct Circle {
+  Vec3 axis;
+  double slope;
+
+  Circle(const Stratum& line, bool of_a)
+      : axis(line.axis), slope(of_a ? -line.slope : line.slope) {}
+};
+
+/// The point of a piece, and its radii, for the direction n from B to A. Of a line its anchor,
+/// whose n.x differs from h by a constant on the circle.
+Vec3 point_of(const Stratum& piece, const Vec3& outward) {
+  return piece.is_free() ? piece.point(outward) : piece.anchor;
+}
+
+/// Newton on the circle of a line for a free piece of the other shape; nothing if s has no maximum
+/// on it near n.
+std::optional<Vec3> on_circle(const Stratum& a, const Stratum& b, const Circle& circle,
+                              const Vec3& start) {
+  const double c = std::sqrt((1.0 - circle.slope) * (1.0 + circle.slope));
+  Vec3 u = start - start.dot(circle.axis) * circle.axis;
+  if (!(u.norm() > 1e-12)) {
+    return std::nullopt;
+  }
+  u.normalize();
+  const auto normal = [&] { return Vec3(circle.slope * circle.axis + c * u); };
+  for (int i = 0; i < kNewtonSteps; ++i) {
+    const Vec3 n = normal();
+    const Vec3 W = point_of(a, -n) - point_of(b, n);
+    const Vec3 t = circle.axis.cross(u);
+    double curved = 0.0;
+    for (const auto& [piece, outward] : {std::pair(&a, Vec3(-n)), std::pair(&b, n)}) {
+      if (piece->is_free()) {
+        curved += t.dot(piece->radii(outward) * t);
+      }
+    }
+    const double slope = c * W.dot(t);
+    const double bend = c * W.dot(u) + c * c * curved;
+    if (!(bend > 0.0)) {
+      return std::nullopt;
+    }
+    const double step = std::clamp(slope / bend, -0.5, 0.5);
+    u = (std::cos(step) * u + std::sin(step) * t).normalized();
+    if (std::abs(step) <= 1e-15) {
+      break;
+    }
+  }
+  return normal().normalized();
+}
+
+/// The normals that two lines share; the one nearer to `near` first.
+Normals of_lines(const Stratum& a, const Stratum& b, const Vec3& near) {
+  const Circle p(a, true);
+  const Circle q(b, false);
+  const Vec3 cross = p.axis.cross(q.axis);
+  const double squared = cross.squaredNorm();
+  Normals result;
+  if (squared > 1e-20) {
+    const double g = p.axis.dot(q.axis);
+    const Vec3 base =
+        ((p.slope - g * q.slope) * p.axis + (q.slope - g * p.slope) * q.axis) / squared;
+    const double rest = 1.0 - base.squaredNorm();
+    if (rest >= 0.0) {
+      const Vec3 out = std::sqrt(rest / squared) * cross;
+      const double side = out.dot(near) < 0.0 ? -1.0 : 1.0;
+      result.push_back((base + side * out).normalized());
+    }
+  }
+  if (squared < 1e-6) {
+    // Nearly parallel: as if exactly so.
+    if (const auto n = on_circle(a, b, p, near)) {
+      result.push_back(*n);
+    }
+    if (const auto n = on_circle(a, b, q, near)) {
+      result.push_back(*n);
+    }
+  }
+  return result;
+}
+
+/// Newton on the sphere for two free pieces.
+std::optional<Vec3> on_sphere(const Stratum& a, const Stratum& b, Vec3 n) {
+  for (int i = 0; i < kNewtonSteps; ++i) {
+    const Vec3 W = a.point(-n) - b.point(n);
+    Eigen::Matrix<double, 3, 2> T;
+    T.col(0) = n.unitOrthogonal();
+    T.col(1) = n.cross(T.col(0));
+    const Eigen::Matrix2d H =
+        T.transpose() * (a.radii(-n) + b.radii(n)) * T + n.dot(W) * Eigen::Matrix2d::Identity();
+    const Eigen::LLT<Eigen::Matrix2d> factor(H);
+    if (factor.info() != Eigen::Success) {
+      return std::nullopt;
+    }
+    Eigen::Vector2d step = factor.solve(T.transpose() * W);
+    if (!step.allFinite()) {
+      return std::nullopt;
+    }
+    const double length = step.norm();
+    if (a.kind != Kind::kVertex || b.kind != Kind::kVertex) {
+      step *= std::min(1.0, 0.5 / length);
+    }
+    n = (n + T * step).normalized();
+    if (length <= 1e-15) {
+      break;
+    }
+  }
+  return n;
+}
+
+/// The normals at which s may be largest, for one piece of each shape.
+Normals normals_of(const Stratum& a, const Stratum& b, const Vec3& near) {
+  if (a.kind == Kind::kFace) {
+    return {-a.axis};
+  }
+  if (b.kind == Kind::kFace) {
+    return {b.axis};
+  }
+  if (a.kind == Kind::kLine && b.kind == Kind::kLine) {
+    return of_lines(a, b, near);
+  }
+  const std::optional<Vec3> n = a.kind == Kind::kLine   ? on_circle(a, b, Circle(a, true), near)
+                                : b.kind == Kind::kLine ? on_circle(a, b, Circle(b, false), near)
+                                                        : on_sphere(a, b, near);
+  return n ? Normals{*n} : Normals{};
+}
+
+/// How sharply a pair of pieces determines its normal.
+int rank_of(const Stratum& a, const Stratum& b) {
+  if (a.kind == Kind::kFace || b.kind == Kind::kFace) {
+    return 3;
+  }
+  return (a.kind == Kind::kLine) + (b.kind == Kind::kLine);
+}
+
+/// Of the free pieces the one that reaches furthest along n.
+const Stratum* furthest_free(const std::vector<Stratum>& pieces, const Vec3& n) {
+  const Stratum* best = nullptr;
+  for (const Stratum& piece : pieces) {
+    if (piece.is_free() && (best == nullptr || n.dot(piece.point(n)) > n.dot(best->point(n)))) {
+      best = &piece;
+    }
+  }
+  return best;
+}
+
+/// Of two faces with equal separation the larger; of equal ones that of the shape which lies lower
+/// along a direction that no scene is aligned with. The rule gives the same shape when A and B are
+/// exchanged.
+bool prefers(const FacingFace& p, double area_p, const FacingFace& q, double area_q) {
+  if (std::abs(area_p - area_q) > 1e-9 * (area_p + area_q)) {
+    return area_p > area_q;
+  }
+  if (p.of_a == q.of_a) {
+    return false;
+  }
+  const Vec3 odd_direction(0.2672612, 0.5345225, 0.8017837);
+  return ((p.normal + q.normal).dot(odd_direction) < 0.0) == p.of_a;
+}
+
+class Search {
+ public:
+  Search(const Convex& a, const Convex& b) : a_(a), b_(b) {}
+
+  void refine(const Vec3& near) {
+    try_pieces(near, kAngles[0]);
+    try_pieces(Vec3(candidates_[highest_].normal), kAngles[1]);
+  }
+
+  /// Has a pair of pieces come at least as far as the directions it started from?
+  [[nodiscard]] bool is_refined() const { return candidates_[highest_].rank >= 0; }
+
+  [[nodiscard]] Separation best() const {
+    const double largest = candidates_[highest_].distance;
+    const double tie = kTie * std::min(a_.size(), b_.size()) +
+                       16.0 * std::numeric_limits<double>::epsilon() * (a_.size() + b_.size());
+    std::vector<const Candidate*> tied;
+    for (const Candidate& candidate : candidates_) {
+      if (candidate.distance >= largest - tie) {
+        tied.push_back(&candidate);
+      }
+    }
+    std::stable_sort(tied.begin(), tied.end(), [](const Candidate* p, const Candidate* q) {
+      return p->rank != q->rank ? p->rank > q->rank : p->distance > q->distance;
+    });
+    Separation result{largest, {}, face()};
+    for (const Candidate* candidate : tied) {
+      result.meetings.push_back({candidate->normal, candidate->a, candidate->b});
+    }
+    return result;
+  }
+
+ private:
+  struct Candidate {
+    double distance;
+    Vec3 normal;
+    int rank;
+    Stratum a;
+    Stratum b;
+  };
+
+  void offer(const Vec3& n, int rank, const Stratum& piece_a, const Stratum& piece_b) {
+    const double s = separation_along(a_, b_, n);
+    const bool is_highest = candidates_.empty() || s > candidates_[highest_].distance;
+    if (!is_highest && s < candidates_[highest_].distance - preference_tolerance(a_, b_)) {
+      return;
+    }
+    if (is_highest) {
+      highest_ = candidates_.size();
+    }
+    candidates_.push_back({s, n, rank, piece_a, piece_b});
+  }
+
+  void try_pieces(const Vec3& near, double angle) {
+    std::vector<Stratum> pieces_a;
+    std::vector<Stratum> pieces_b;
+    a_.add_strata(-near, angle, pieces_a);
+    b_.add_strata(near, angle, pieces_b);
+    for (const Stratum& piece_a : pieces_a) {
+      for (const Stratum& piece_b : pieces_b) {
+        for (const Vec3& n : normals_of(piece_a, piece_b, near)) {
+          offer(n, rank_of(piece_a, piece_b), piece_a, piece_b);
+        }
+      }
+    }
+    offer(near, -1, *furthest_free(pieces_a, -near), *furthest_free(pieces_b, near));
+  }
+
+  [[nodiscard]] bool is_as_good(double separation) const {
+    const double largest = candidates_[highest_].distance;
+    const double tolerance = preference_tolerance(a_, b_);
+    const double rounding =
+        64.0 * std::numeric_limits<double>::epsilon() * (a_.size() + b_.size() + std::abs(largest));
+    const double less = std::max(0.0, largest - separation - rounding);
+    const double sum = largest + separation + 2.0 * (a_.rounding() + b_.rounding());
+    return less <= tolerance && less * sum <= tolerance * tolerance;
+  }
+
+  [[nodiscard]] std::optional<FacingFace> face() const {
+    std::optional<FacingFace> best;
+    double best_area = 0.0;
+    for (const Candidate& candidate : candidates_) {
+      if (candidate.rank < 3 || !is_as_good(candidate.distance)) {
+        continue;
+      }
+      for (const Stratum* piece : {&candidate.a, &candidate.b}) {
+        const bool of_a = piece == &candidate.a;
+        const FacingFace found{of_a, of_a ? Vec3(-piece->axis) : piece->axis, candidate.distance};
+        if (piece->kind == Kind::kFace && found.normal == candidate.normal &&
+            (!best || prefers(found, piece->area, *best, best_area))) {
+          best = found;
+          best_area = piece->area;
+        }
+      }
+    }
+    return best;
+  }
+
+  const Convex& a_;
+  const Convex& b_;
+  std::vector<Candidate> candidates_;
+  std::size_t highest_ = 0;
+};
+
+}  // namespace
+
+double preference_tolerance(const Convex& a, const Convex& b) {
+  return 1e-6 * std::min(a.size(), b.size());
+}
+
+double separation_along(const Convex& a, const Convex& b, const Vec3& n) {
+  return n.dot(a.support(-n) - b.support(n)) - (a.rounding() + b.rounding());
+}
+
+Separation separate(const Convex& a, const Convex& b) {
+  const double size = std::min(a.size(), b.size());
+  const GjkResult near = gjk(a, b, kGjkNear, 0.0);
+  Search search(a, b);
+  if (near.lower > -kTouch * size && !near.normal.isZero(0.0)) {
+    search.refine(near.normal);
+    if (near.lower > 0.0 && !search.is_refined()) {
+      search.refine(gjk(a, b, 0.0, 0.0).normal);  // Newton needs to start nearer
+    }
+  }
+  if (near.lower <= kTouch * size) {
+    std::vector<Vec3> tried;
+    for (const Axis& axis : penetration(a, b, kNear * size)) {
+      const bool is_new = std::all_of(tried.begin(), tried.end(), [&](const Vec3& n) {
+        return n.dot(axis.normal) < kSameBasin;
+      });
+      if (is_new && tried.size() < kMostBasins) {
+        tried.push_back(axis.normal);
+        search.refine(axis.normal);
+      }
+    }
+  }
+  return search.best();
+}
+
+bool overlap(const Convex& a, const Convex& b) {
+  const double touch = kTouch * std::min(a.size(), b.size());
+  const GjkResult near = gjk(a, b, 0.5, touch);
+  if (near.lower > a.rounding() + b.rounding() + touch) {
+    return false;
+  }
+  return separate(a, b).distance <= 0.0;
+}
+
+}  // namespace signorini::collision
