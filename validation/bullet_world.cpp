@@ -85,6 +85,10 @@ btCollisionShape* BulletWorld::make_shape(const collision::Collider& collider, P
   if (const auto* box = std::get_if<collision::Box>(&collider.shape)) {
     return new btBoxShape(bullet(box->half_extents));
   }
+  if (!std::holds_alternative<collision::HalfSpace>(collider.shape)) {
+    throw InputError(scene_.source + ": collider '" + collider.name +
+                     "': Bullet is given spheres, boxes and half-spaces only");
+  }
   // A half-space: the top face of a large box is its surface.
   const double edge = profile_.ground_half_edge;
   pose.position -= pose.orientation * Vec3(0.0, 0.0, edge);
