@@ -61,9 +61,10 @@ CollisionWorld::CollisionWorld(const Bodies& bodies, std::vector<Collider> colli
   ignored_.validate(static_cast<int>(bodies.size()));
   for (Collider& collider : colliders_) {
     validate(collider, static_cast<int>(bodies.size()));
-    if (std::holds_alternative<HalfSpace>(collider.shape) && is_dynamic_[collider.body]) {
-      throw std::invalid_argument("collider '" + collider.name +
-                                  "': body: a half-space is immovable, body " +
+    if (must_be_immovable(collider.shape) && is_dynamic_[collider.body]) {
+      const bool is_mesh = std::holds_alternative<TriangleMesh>(collider.shape);
+      throw std::invalid_argument("collider '" + collider.name + "': body: a " +
+                                  (is_mesh ? "mesh" : "half-space") + " is immovable, body " +
                                   std::to_string(collider.body) + " is dynamic");
     }
     collider.local.orientation.normalize();

@@ -198,7 +198,8 @@ class Search {
   /// From B to A, of the contact with the least gap.
   [[nodiscard]] Vec3 normal(const Moment& moment) const {
     std::vector<Contact> contacts;
-    find_intersection(a_.shape, moment.shape_a, b_.shape, moment.shape_b, kInfinity, contacts);
+    find_intersection(a_.shape, moment.shape_a, b_.shape, moment.shape_b,
+                      std::max(0.0, moment.gap) + rounding_, contacts);
     return std::min_element(contacts.begin(), contacts.end(),
                             [](const Contact& p, const Contact& q) { return p.gap < q.gap; })
         ->normal;

@@ -87,32 +87,6 @@ double least_gap(const std::vector<Contact>& contacts, std::size_t first) {
   return least;
 }
 
-void find_on_face(const Convex& a, const Convex& b, const FacingFace& face, double margin,
-                  std::vector<Contact>& contacts) {
-  const Convex& owner = face.of_a ? a : b;
-  const Convex& other = face.of_a ? b : a;
-  const Vec3 outward = face.of_a ? Vec3(-face.normal) : face.normal;
-  const double slack = preference_tolerance(a, b);
-  const Facet reference = owner.facet(outward);
-  const std::vector<FacetPoint> points = clip_facet(other.facet(-outward), reference, slack);
-
-  // Rounding of the heights must not lose the one contact of shapes that are margin apart.
-  const double highest = std::max(margin, face.separation);
-  FaceContacts found{face.of_a, outward, other.rounding(), highest, contacts};
-  const std::size_t first = contacts.size();
-  for (const FacetPoint& point : points) {
-    found.add(point.on_reference, point.reference, point.on_incident, point.height, point.incident,
-              point.surface);
-  }
-  const Deepest deepest(other, -outward);
-  if (face.separation < least_gap(contacts, first) - slack &&
-      is_over(reference, deepest.core, slack)) {
-    const double height = face.separation + other.rounding();
-    found.add(deepest.core - height * outward, reference.face, deepest.core, height,
-              deepest.piece.feature, deepest.surface);
-  }
-}
-
 // Two lines.
 
 /// A line of a shape as a segment of its core.
@@ -268,6 +242,32 @@ bool are_parallel(const Convex& a, const Convex& b, const Meeting& meeting) {
 
 }  // namespace
 
+void find_contacts_on_face(const Convex& a, const Convex& b, const FacingFace& face, double margin,
+                           std::vector<Contact>& contacts) {
+  const Convex& owner = face.of_a ? a : b;
+  const Convex& other = face.of_a ? b : a;
+  const Vec3 outward = face.of_a ? Vec3(-face.normal) : face.normal;
+  const double slack = preference_tolerance(a, b);
+  const Facet reference = owner.facet(outward);
+  const std::vector<FacetPoint> points = clip_facet(other.facet(-outward), reference, slack);
+
+  // Rounding of the heights must not lose the one contact of shapes that are margin apart.
+  const double highest = std::max(margin, face.separation);
+  FaceContacts found{face.of_a, outward, other.rounding(), highest, contacts};
+  const std::size_t first = contacts.size();
+  for (const FacetPoint& point : points) {
+    found.add(point.on_reference, point.reference, point.on_incident, point.height, point.incident,
+              point.surface);
+  }
+  const Deepest deepest(other, -outward);
+  if (face.separation < least_gap(contacts, first) - slack &&
+      is_over(reference, deepest.core, slack)) {
+    const double height = face.separation + other.rounding();
+    found.add(deepest.core - height * outward, reference.face, deepest.core, height,
+              deepest.piece.feature, deepest.surface);
+  }
+}
+
 void find_contacts(const Convex& a, const Convex& b, double margin,
                    std::vector<Contact>& contacts) {
   const Separation found = separate(a, b);
@@ -276,7 +276,7 @@ void find_contacts(const Convex& a, const Convex& b, double margin,
   }
   if (found.face) {
     const std::size_t before = contacts.size();
-    find_on_face(a, b, *found.face, margin, contacts);
+    find_contacts_on_face(a, b, *found.face, margin, contacts);
     if (contacts.size() > before) {
       return;
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <signorini/collision/convex.h>
+#include <signorini/collision/separation.h>
 
 #include <vector>
 
@@ -17,6 +18,10 @@ namespace signorini::collision {
 /// - else the one pair of nearest (or deepest) points, kCurved with the curvature of both surfaces.
 /// @param contacts are added to
 void find_contacts(const Convex& a, const Convex& b, double margin, std::vector<Contact>& contacts);
+
+/// The contacts of a given face of A or B alone, as above.
+void find_contacts_on_face(const Convex& a, const Convex& b, const FacingFace& face, double margin,
+                           std::vector<Contact>& contacts);
 
 /// The same against a plane through `on_plane` with the outward normal n, which is B.
 void find_contacts(const Convex& a, const Vec3& n, const Vec3& on_plane, double margin,

@@ -1,7 +1,9 @@
 #include <signorini/collision/box_box.h>
 #include <signorini/collision/capsule_pairs.h>
+#include <signorini/collision/compound_pairs.h>
 #include <signorini/collision/convex_pairs.h>
 #include <signorini/collision/half_space_pairs.h>
+#include <signorini/collision/mesh_pairs.h>
 #include <signorini/collision/pair_query.h>
 #include <signorini/collision/sphere_pairs.h>
 #include <signorini/core/model/number_text.h>

@@ -47,6 +47,16 @@ struct Validate {
     }
   }
   void operator()(const HalfSpace&) const {}
+  void operator()(const TriangleMesh& mesh) const {
+    if (mesh.data == nullptr) {
+      throw std::invalid_argument("mesh: data: must not be null");
+    }
+  }
+  void operator()(const Compound& compound) const {
+    if (compound.data == nullptr) {
+      throw std::invalid_argument("compound: data: must not be null");
+    }
+  }
 };
 
 }  // namespace

@@ -55,7 +55,28 @@ struct ConvexHull {
 /// z <= 0 in its frame: the surface is the plane z = 0, the outward normal +z.
 struct HalfSpace {};
 
-using Shape = std::variant<Sphere, Box, Capsule, Cylinder, Cone, Ellipsoid, ConvexHull, HalfSpace>;
+struct MeshData;
+
+/// A surface of triangles on a body that is not dynamic: made by make_mesh() or make_height_field()
+/// (mesh.h).
+struct TriangleMesh {
+  std::shared_ptr<const MeshData> data;  ///< not null
+};
+
+struct CompoundData;
+
+/// Several convex shapes as one: made by make_compound() (compound.h).
+struct Compound {
+  std::shared_ptr<const CompoundData> data;  ///< not null
+};
+
+using Shape = std::variant<Sphere, Box, Capsule, Cylinder, Cone, Ellipsoid, ConvexHull, HalfSpace,
+                           TriangleMesh, Compound>;
+
+/// Half-spaces and meshes belong to bodies that are not dynamic.
+[[nodiscard]] inline bool must_be_immovable(const Shape& shape) {
+  return std::holds_alternative<HalfSpace>(shape) || std::holds_alternative<TriangleMesh>(shape);
+}
 
 /// A shape fixed to a body.
 struct Collider {
@@ -88,20 +109,24 @@ struct MassProperties {
 /// - capsule: the cylinder between the ends, and of both half balls together (mass m_s)
 ///   I_z = 2/5 m_s r^2, I_x = m_s (2/5 r^2 + h^2 + 3/4 h r);
 /// - cone, height H: I_z = 3/10 m r^2, I_x = 3/80 m (4 r^2 + H^2), the centre H/4 over the base;
-/// - hull: exact integrals, see make_hull().
+/// - hull: exact integrals, see make_hull();
+/// - compound: the sum over its parts, so that where they overlap the mass counts twice.
 /// @param density kg/m^3, finite and > 0
-/// @throws std::invalid_argument for a bad shape or density, and for a half-space, which has none.
+/// @throws std::invalid_argument for a bad shape or density, and for a half-space and a mesh, which
+/// have none.
 [[nodiscard]] MassProperties mass_properties(const Shape& shape, double density);
 
 /// The largest distance of a point of the shape from the origin of a frame in which the shape has
-/// this pose, m; for an ellipsoid off the origin a bound of it; +infinity for a half-space.
+/// this pose, m; for an ellipsoid, mesh or compound off the origin a bound of it; +infinity for a
+/// half-space.
 [[nodiscard]] double bounding_radius(const Shape& shape, const Pose& pose);
 
 /// The support function: the largest n.x over the shape, m (n unit). +infinity for a half-space
 /// unless n is its normal to 1e-12.
 [[nodiscard]] double support(const Shape& shape, const Pose& pose, const Vec3& n);
 
-/// The smallest axis-aligned bounds, to rounding; infinite on every axis for a half-space.
+/// The smallest axis-aligned bounds, to rounding (of meshes: the bounds of their own); infinite on
+/// every axis for a half-space.
 [[nodiscard]] Bounds bounds(const Shape& shape, const Pose& pose);
 
 }  // namespace signorini::collision

@@ -1,4 +1,6 @@
+#include <signorini/collision/compound.h>
 #include <signorini/collision/hull.h>
+#include <signorini/collision/mesh.h>
 #include <signorini/collision/shape.h>
 
 #include <algorithm>
@@ -44,6 +46,12 @@ struct Radius {
     return std::sqrt(squared);
   }
   double operator()(const HalfSpace&) const { return kInfinity; }
+  double operator()(const TriangleMesh& mesh) const {
+    return pose.position.norm() + mesh.data->radius;
+  }
+  double operator()(const Compound& compound) const {
+    return pose.position.norm() + compound.data->radius;
+  }
 };
 
 /// The support function in the shape's frame.
@@ -76,6 +84,20 @@ struct Support {
     constexpr double kParallel = 1e-12;
     return (Vec3::UnitZ() - n).norm() <= kParallel ? 0.0 : kInfinity;
   }
+  double operator()(const TriangleMesh& mesh) const {
+    double highest = -kInfinity;
+    for (const Vec3& vertex : mesh.data->vertices) {
+      highest = std::max(highest, n.dot(vertex));
+    }
+    return highest;
+  }
+  double operator()(const Compound& compound) const {
+    double highest = -kInfinity;
+    for (const CompoundPart& part : compound.data->parts) {
+      highest = std::max(highest, support(part.shape, part.local, n));
+    }
+    return highest;
+  }
 };
 
 }  // namespace
@@ -93,6 +115,12 @@ Bounds bounds(const Shape& shape, const Pose& pose) {
     return {Vec3::Constant(-kInfinity), Vec3::Constant(kInfinity)};
   }
   const Mat3 axes = pose.orientation.toRotationMatrix();
+  if (const auto* mesh = std::get_if<TriangleMesh>(&shape)) {
+    const Bounds& own = mesh->data->tree.all();
+    const Vec3 centre = pose * Vec3(0.5 * (own.low + own.high));
+    const Vec3 half = axes.cwiseAbs() * (0.5 * (own.high - own.low));
+    return {centre - half, centre + half};
+  }
   Bounds result;
   for (int k = 0; k < 3; ++k) {
     const Vec3 n = axes.row(k);

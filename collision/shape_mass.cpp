@@ -1,3 +1,4 @@
+#include <signorini/collision/compound.h>
 #include <signorini/collision/hull.h>
 #include <signorini/collision/shape.h>
 #include <signorini/core/model/number_text.h>
@@ -66,6 +67,27 @@ struct Mass {
   }
   MassProperties operator()(const HalfSpace&) const {
     throw std::invalid_argument("half-space: mass: it has no finite mass");
+  }
+  MassProperties operator()(const TriangleMesh&) const {
+    throw std::invalid_argument("mesh: mass: a surface has no volume");
+  }
+  MassProperties operator()(const Compound& compound) const {
+    MassProperties sum{0.0, Mat3::Zero(), Vec3::Zero()};
+    Mat3 about_origin = Mat3::Zero();
+    const auto of_point = [](double mass, const Vec3& x) {
+      return Mat3(mass * (x.squaredNorm() * Mat3::Identity() - x * x.transpose()));
+    };
+    for (const CompoundPart& part : compound.data->parts) {
+      const MassProperties one = std::visit(*this, part.shape);
+      const Vec3 centre = part.local * one.centre;
+      const Mat3 axes = part.local.orientation.toRotationMatrix();
+      sum.mass += one.mass;
+      sum.centre += one.mass * centre;
+      about_origin += axes * one.inertia * axes.transpose() + of_point(one.mass, centre);
+    }
+    sum.centre /= sum.mass;
+    sum.inertia = about_origin - of_point(sum.mass, sum.centre);
+    return sum;
   }
 };
 

@@ -47,6 +47,7 @@ struct Outside {
     return most;
   }
   double operator()(const HalfSpace&) const { return p.z(); }
+  double operator()(const auto&) const { return 0.0; }  // meshes, compounds: not here
 };
 
 double outside(const Shape& shape, const Pose& pose, const Vec3& point) {

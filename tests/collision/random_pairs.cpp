@@ -194,6 +194,7 @@ struct Describe {
     }
   }
   void operator()(const HalfSpace&) const { out << "half-space"; }
+  void operator()(const auto&) const {}  // meshes, compounds: not here
 };
 
 void describe(std::ostream& out, const Shape& shape, const Pose& pose) {
