@@ -39,6 +39,10 @@ struct InteriorPointSettings : SolverSettings {
 ///    (A + Y/S + V/T + proximal) dx = -r + c_s / s - c_t / t. (Mehrotra, SIAM J. Optim. 2, 1992;
 ///    Wright, Primal-Dual Interior-Point Methods, 1997, chapter 8.) Free rows have no barrier: the
 ///    proximal term moves them by exact Newton steps on w_i = 0.
+///    Where contacts of bodies have no upper bounds, forces add up from contact to contact to a
+///    size that nobody knows beforehand: the cold start is ten times as large as q asks of one
+///    contact alone, and a hundred times larger again as long as the first step all but stands
+///    still.
 /// 2. As soon as the active set that the iterate points at has settled, Newton on that set
 ///    (active_set_newton.h): usually one to three factorisations to the last digits.
 /// 3. Where the set does not settle (degenerate contacts): proximal Newton from the interior
