@@ -137,6 +137,7 @@ Solver& AutoSolver::solver(std::string_view name, int max_iterations, double tim
   own.max_iterations = max_iterations;
   own.time_limit = time_left;
   own.recorder = nullptr;  // told of the whole solve, not of its attempts
+  own.certify_islands = false;
   if (found == made_.end()) {
     made_.push_back({name, max_iterations, nullptr});
     found = std::prev(made_.end());
