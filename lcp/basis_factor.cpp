@@ -1,4 +1,5 @@
 #include <signorini/lcp/basis_factor.h>
+#include <signorini/lcp/column_room.h>
 
 #include <algorithm>
 #include <numeric>
@@ -223,10 +224,7 @@ void BasisFactor::column(Variable variable, Vector& a) const {
 
 void BasisFactor::exchange(int position, Variable entering, const Vector& y) {
   const Index k = static_cast<Index>(eta_position_.size());
-  if (etas_.rows() < n_ || etas_.cols() <= k) {
-    etas_.conservativeResize(std::max<Index>(etas_.rows(), n_),
-                             std::max<Index>(2 * etas_.cols(), 16));
-  }
+  make_room(etas_, n_, k + 1);
   etas_.col(k).head(n_) = y;
   eta_position_.push_back(position);
   if (position == cover_position_) {

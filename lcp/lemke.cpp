@@ -1,3 +1,4 @@
+#include <signorini/lcp/column_room.h>
 #include <signorini/lcp/lemke.h>
 #include <signorini/lcp/lemke_ray.h>
 #include <signorini/lcp/number_text.h>
@@ -370,9 +371,7 @@ int Lemke::choose_leaving() {
 int Lemke::break_tie() {
   const Index n = x_.size();
   const Index count = static_cast<Index>(tied_.size());
-  if (tied_rows_.rows() < n || tied_rows_.cols() < count) {
-    tied_rows_.resize(n, std::max(count, 2 * tied_rows_.cols()));
-  }
+  make_room(tied_rows_, n, count);
   Vector& row = residual_;
   for (Index k = 0; k < count; ++k) {
     row.setZero(n);

@@ -297,6 +297,21 @@ TEST(Lemke, OneSolverSolvesOneProblemAfterAnotherAsAFreshOneDoes) {
   }
 }
 
+// The rows that tie are kept in a matrix, which once doubled with every problem larger than the
+// last.
+TEST(Lemke, ProblemsThatGrowDoNotDoubleItsMemory) {
+  Lemke solver;
+  Result result;
+  for (Index n = 2; n <= 64; ++n) {
+    Problem problem;  // every row but the first ties at zero
+    problem.M = Matrix(Matrix::Identity(n, n));
+    problem.q = Vector::Zero(n);
+    problem.q[0] = -1.0;
+    ASSERT_NO_THROW(solver.solve(problem, result)) << "n = " << n;
+    EXPECT_EQ(result.status, Status::kSolved) << "n = " << n;
+  }
+}
+
 TEST(Lemke, StarvedOfPivotsKeepsAFiniteIterateAndSaysIterationLimit) {
   for (const int limit : {0, 1, 10}) {
     LemkeSettings settings;
