@@ -1,9 +1,7 @@
 #include <signorini/lcp/alart_curnier.h>
 #include <signorini/lcp/best_iterate.h>
-#include <signorini/lcp/body_newton_system.h>
-#include <signorini/lcp/group_scale.h>
-#include <signorini/lcp/newton_system.h>
 #include <signorini/lcp/number_text.h>
+#include <signorini/lcp/scaled_groups.h>
 
 #include <algorithm>
 #include <array>
@@ -31,10 +29,6 @@ class AlartCurnier::Workspace {
     bool converged;
     int steps;
   };
-  void scale(const Problem& problem);
-  void scale_given(const Problem& problem);
-  void scale_bodies(const Problem& problem);
-  void multiply(const Vector& x, Vector& u);
   Inner newton(const AlartCurnierSettings& settings, double alpha, double tolerance);
   double evaluate(double alpha, const Vector& x);
   [[nodiscard]] bool solved() const {
@@ -49,93 +43,24 @@ class AlartCurnier::Workspace {
   int* factorizations_ = nullptr;
   int most_steps_ = 0;
   double tolerance_ = 0.0;
-  Vector scale_, b_;  // s of a row; the scaled q
-  double unit_ = 1.0;
   double rho_ = 1.0;
-  bool in_body_space_ = false;
-  WhitenedRows rows_;             // of a factored problem, or
-  SparseMatrix W_;                // the matrix, scaled
-  std::vector<int> group_start_;  // of rows_
-  Vector velocity_;
-  AlartCurnierFunction function_;
-  NewtonSystem system_;
-  BodyNewtonSystem body_system_;
+  ScaledGroups groups_;
   BestIterate best_;
   Vector x_, anchor_, trial_, u_, F_, dx_, z_, least_x_;
   std::vector<AlartCurnierFunction::Block> A_, B_;
   std::vector<AlartCurnierFunction::Coupling> couplings_;
 };
 
-/// A factored matrix stays factored, unless coupled limits tie rows of different groups.
-void AlartCurnier::Workspace::scale(const Problem& problem) {
-  in_body_space_ = std::holds_alternative<FactoredMatrix>(problem.M) && problem.limits.empty();
-  if (in_body_space_) {
-    scale_bodies(problem);
-  } else {
-    scale_given(problem);
-  }
-  b_ = scale_.cwiseProduct(problem.q);
-  unit_ = b_.cwiseAbs().maxCoeff();
-  unit_ = unit_ > 0.0 ? unit_ : 1.0;
-  b_ /= unit_;
-  function_.set(problem, scale_, unit_);
-  if (in_body_space_) {
-    body_system_.set(rows_, function_);
-  } else {
-    system_.set(W_, function_);
-  }
-}
-
-void AlartCurnier::Workspace::scale_bodies(const Problem& problem) {
-  group_start_.clear();
-  for (int i = 0, cone = 0; i < problem.size();) {
-    group_start_.push_back(i);
-    const bool starts_cone =
-        cone < static_cast<int>(problem.cones.size()) && problem.cones[cone].normal_row == i;
-    i += starts_cone ? problem.cones[cone++].dimension : 1;
-  }
-  group_start_.push_back(static_cast<int>(problem.size()));
-  rows_.set(std::get<FactoredMatrix>(problem.M), group_start_);
-  scale_ = rows_.scale().cwiseInverse();
-}
-
-void AlartCurnier::Workspace::scale_given(const Problem& problem) {
-  group_scale(problem, scale_);
-  if (const auto* factored = std::get_if<FactoredMatrix>(&problem.M)) {
-    W_ = factored->form();
-  } else if (const auto* dense = std::get_if<Matrix>(&problem.M)) {
-    W_ = dense->sparseView();
-  } else {
-    W_ = std::get<SparseMatrix>(problem.M);
-  }
-  for (int j = 0; j < W_.outerSize(); ++j) {
-    for (SparseMatrix::InnerIterator it(W_, j); it; ++it) {
-      it.valueRef() *= scale_[it.row()] * scale_[j];
-    }
-  }
-}
-
-/// u = W x, scaled.
-void AlartCurnier::Workspace::multiply(const Vector& x, Vector& u) {
-  if (!in_body_space_) {
-    u.noalias() = W_ * x;
-    return;
-  }
-  rows_.transpose_times(x, velocity_);
-  rows_.times(velocity_, u);
-  u += rows_.compliance().cwiseProduct(x);
-}
-
 double AlartCurnier::Workspace::error_of(const Vector& x) {
-  z_ = unit_ * scale_.cwiseProduct(x);
+  groups_.to_caller(x, z_);
   return BestIterate::merit(best_.offer(z_));
 }
 
 /// F_ at x. @return |F|.
 double AlartCurnier::Workspace::evaluate(double alpha, const Vector& x) {
-  multiply(x, u_);
-  u_ += b_ + alpha * (x - anchor_);
-  function_.evaluate(x, u_, rho_, F_);
+  groups_.multiply(x, u_);
+  u_ += groups_.b() + alpha * (x - anchor_);
+  groups_.function().evaluate(x, u_, rho_, F_);
   return F_.norm();
 }
 
@@ -154,11 +79,9 @@ AlartCurnier::Workspace::Inner AlartCurnier::Workspace::newton(const AlartCurnie
     if (F_.cwiseAbs().maxCoeff() <= tolerance) {
       return {true, step};
     }
-    function_.differentiate(x_, u_, rho_, A_, B_, couplings_);
+    groups_.function().differentiate(x_, u_, rho_, A_, B_, couplings_);
     ++*factorizations_;
-    const bool found = in_body_space_ ? body_system_.solve(A_, B_, alpha, F_, dx_)
-                                      : system_.solve(A_, B_, couplings_, alpha, F_, dx_);
-    if (!found) {
+    if (!groups_.factor(A_, B_, couplings_, alpha) || !groups_.solve(F_, dx_)) {
       break;
     }
     const double reference = *std::max_element(recent.begin(), recent.end());
@@ -195,10 +118,10 @@ Status AlartCurnier::Workspace::solve(const Problem& problem, const AlartCurnier
       settings.max_iterations >= 0 ? settings.max_iterations : AlartCurnierSettings::kDefaultSteps;
   tolerance_ = settings.tolerance;
   best_.reset(problem);
-  scale(problem);
+  groups_.set(problem);
   x_.setZero(problem.size());
   if (warm_start != nullptr) {
-    x_ = warm_start->cwiseQuotient(scale_) / unit_;
+    groups_.from_caller(*warm_start, x_);
   }
   double alpha = settings.proximal;
   double error = error_of(x_);

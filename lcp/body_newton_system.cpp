@@ -145,38 +145,45 @@ void BodyNewtonSystem::assemble(const std::vector<Block>& B) {
   });
 }
 
-bool BodyNewtonSystem::solve(const std::vector<Block>& A, const std::vector<Block>& B, double alpha,
-                             const Vector& F, Vector& dx) {
+bool BodyNewtonSystem::factor(const std::vector<Block>& A, const std::vector<Block>& B,
+                              double alpha) {
   if (!invert_blocks(A, B, alpha)) {
     return false;
   }
+  B_ = &B;
+  if (rows_->degrees_of_freedom() == 0) {
+    return true;
+  }
+  assemble(B);
+  lu_.factorize(H_);
+  return lu_.info() == Eigen::Success;
+}
+
+/// out = blocks in.
+void BodyNewtonSystem::apply(const std::vector<Block>& blocks, const Vector& in,
+                             Vector& out) const {
   const auto& groups = function_->groups();
-  const auto apply = [&groups](const std::vector<Block>& blocks, const Vector& in, Vector& out) {
-    out.resize(in.size());
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-      const int d = groups[g].dimension;
-      const int first = groups[g].first;
-      for (int i = 0; i < d; ++i) {
-        double sum = 0.0;
-        for (int j = 0; j < d; ++j) {
-          sum += blocks[g](i, j) * in[first + j];
-        }
-        out[first + i] = sum;
+  out.resize(in.size());
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const int d = groups[g].dimension;
+    const int first = groups[g].first;
+    for (int i = 0; i < d; ++i) {
+      double sum = 0.0;
+      for (int j = 0; j < d; ++j) {
+        sum += blocks[g](i, j) * in[first + j];
       }
+      out[first + i] = sum;
     }
-  };
-  dx.resize(F.size());
+  }
+}
+
+bool BodyNewtonSystem::solve(const Vector& F, Vector& dx) {
   if (rows_->degrees_of_freedom() > 0) {
-    assemble(B);
-    lu_.factorize(H_);
-    if (lu_.info() != Eigen::Success) {
-      return false;
-    }
     apply(inverse_, F, h_);
     rows_->transpose_times(h_, y_);
     y_ = lu_.solve(-y_).eval();
     rows_->times(y_, gy_);
-    apply(B, gy_, h_);
+    apply(*B_, gy_, h_);
     h_ += F;
   } else {
     h_ = F;

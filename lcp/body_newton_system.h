@@ -21,19 +21,24 @@ class BodyNewtonSystem {
   /// Keeps rows and function, whose groups must be the same.
   void set(const WhitenedRows& rows, const AlartCurnierFunction& function);
 
-  /// @return false if a matrix is singular or the step is not finite; dx is then of no use.
-  [[nodiscard]] bool solve(const std::vector<AlartCurnierFunction::Block>& A,
-                           const std::vector<AlartCurnierFunction::Block>& B, double alpha,
-                           const Vector& F, Vector& dx);
+  /// Keeps B until the last solve(). @return false if a matrix is singular; solve() must then not
+  /// be called.
+  [[nodiscard]] bool factor(const std::vector<AlartCurnierFunction::Block>& A,
+                            const std::vector<AlartCurnierFunction::Block>& B, double alpha);
+  /// @return false if the step is not finite; dx is then of no use.
+  [[nodiscard]] bool solve(const Vector& F, Vector& dx);
 
  private:
   void set_pattern();
   [[nodiscard]] bool invert_blocks(const std::vector<AlartCurnierFunction::Block>& A,
                                    const std::vector<AlartCurnierFunction::Block>& B, double alpha);
   void assemble(const std::vector<AlartCurnierFunction::Block>& B);
+  void apply(const std::vector<AlartCurnierFunction::Block>& blocks, const Vector& in,
+             Vector& out) const;
 
   const WhitenedRows* rows_ = nullptr;
   const AlartCurnierFunction* function_ = nullptr;
+  const std::vector<AlartCurnierFunction::Block>* B_ = nullptr;
   std::vector<AlartCurnierFunction::Block> inverse_;  // K^-1
   SparseMatrix H_;
   std::vector<int> row_offset_;  // of a pair of entries of a group: where the first body's rows

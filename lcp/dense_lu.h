@@ -16,8 +16,9 @@ class DenseLu {
     return values_.data();
   }
 
-  /// x <- M^-1 x; M is overwritten by its factors. @return false if a pivot is 0 or not finite.
-  [[nodiscard]] bool solve(double* x) {
+  /// Overwrites the matrix by its factors. @return false if a pivot is 0 or not finite.
+  [[nodiscard]] bool factor() {
+    pivots_.resize(n_);
     for (int k = 0; k < n_; ++k) {
       double* pivot_column = column(k);
       const int p = static_cast<int>(
@@ -27,17 +28,30 @@ class DenseLu {
       if (!(std::abs(pivot_column[p]) > 0.0) || !std::isfinite(pivot_column[p])) {
         return false;
       }
-      swap_rows(k, p, x);
+      pivots_[k] = p;
+      swap_rows(k, p);
       for (int i = k + 1; i < n_; ++i) {
         pivot_column[i] /= pivot_column[k];
-        x[i] -= pivot_column[i] * x[k];
       }
       for (int j = k + 1; j < n_; ++j) {
         double* other = column(j);
-        const double factor = other[k];
-        for (int i = k + 1; factor != 0.0 && i < n_; ++i) {
-          other[i] -= pivot_column[i] * factor;
+        const double multiple = other[k];
+        for (int i = k + 1; multiple != 0.0 && i < n_; ++i) {
+          other[i] -= pivot_column[i] * multiple;
         }
+      }
+    }
+    return true;
+  }
+
+  /// x <- M^-1 x. @pre factor() returned true.
+  void solve(double* x) {
+    for (int k = 0; k < n_; ++k) {
+      std::swap(x[k], x[pivots_[k]]);
+    }
+    for (int k = 0; k < n_; ++k) {
+      for (int i = k + 1; i < n_; ++i) {
+        x[i] -= column(k)[i] * x[k];
       }
     }
     for (int k = n_ - 1; k >= 0; --k) {
@@ -46,22 +60,21 @@ class DenseLu {
         x[i] -= column(k)[i] * x[k];
       }
     }
-    return true;
   }
 
  private:
   double* column(int j) { return values_.data() + static_cast<std::size_t>(j) * n_; }
-  void swap_rows(int a, int b, double* x) {
+  void swap_rows(int a, int b) {
     if (a == b) {
       return;
     }
-    std::swap(x[a], x[b]);
     for (int j = 0; j < n_; ++j) {
       std::swap(column(j)[a], column(j)[b]);
     }
   }
 
   int n_ = 0;
+  std::vector<int> pivots_;
   std::vector<double> values_;
 };
 

@@ -43,9 +43,9 @@ void NewtonSystem::find_active(const std::vector<Block>& B,
   }
 }
 
-/// The active columns as a sparse matrix; the others times dx go to the right-hand side.
-void NewtonSystem::assemble(const std::vector<Block>& A, const std::vector<Block>& B, double alpha,
-                            const Vector& dx) {
+/// The active columns as a sparse matrix.
+void NewtonSystem::assemble(const std::vector<Block>& A, const std::vector<Block>& B,
+                            double alpha) {
   const auto& groups = function_->groups();
   const auto touch = [this](int g) {
     if (is_in_column_[g] == 0) {
@@ -57,11 +57,7 @@ void NewtonSystem::assemble(const std::vector<Block>& A, const std::vector<Block
   outer_.assign(1, 0);
   inner_.clear();
   values_.clear();
-  for (int j = 0; j < W_->cols(); ++j) {
-    const bool is_active = active_row_[j] >= 0;
-    if (!is_active && dx[j] == 0.0) {
-      continue;
-    }
+  for (const int j : active_rows_) {
     groups_in_column_.clear();
     for (SparseMatrix::InnerIterator it(*W_, j); it; ++it) {
       const int i = static_cast<int>(it.row());
@@ -72,11 +68,9 @@ void NewtonSystem::assemble(const std::vector<Block>& A, const std::vector<Block
       }
     }
     const int own = function_->group_of(j);
-    if (is_active) {
-      touch(own);
-      const int k = j - groups[own].first;
-      column_[own] += A[own].col(k) + alpha * B[own].col(k);
-    }
+    touch(own);
+    const int k = j - groups[own].first;
+    column_[own] += A[own].col(k) + alpha * B[own].col(k);
     for (const auto& [row, value] : couplings_of_column_[j]) {
       const int g = function_->group_of(row);
       touch(g);
@@ -85,24 +79,18 @@ void NewtonSystem::assemble(const std::vector<Block>& A, const std::vector<Block
     std::sort(groups_in_column_.begin(), groups_in_column_.end());
     for (const int g : groups_in_column_) {
       is_in_column_[g] = 0;
-      for (int k = 0; k < groups[g].dimension; ++k) {
-        const int row = active_row_[groups[g].first + k];
-        const double value = column_[g][k];
-        if (!is_active) {
-          right_[row] -= value * dx[j];
-        } else if (value != 0.0) {
-          inner_.push_back(row);
-          values_.push_back(value);
+      for (int i = 0; i < groups[g].dimension; ++i) {
+        if (column_[g][i] != 0.0) {
+          inner_.push_back(active_row_[groups[g].first + i]);
+          values_.push_back(column_[g][i]);
         }
       }
     }
-    if (is_active) {
-      outer_.push_back(static_cast<int>(inner_.size()));
-    }
+    outer_.push_back(static_cast<int>(inner_.size()));
   }
 }
 
-bool NewtonSystem::factor_and_solve() {
+bool NewtonSystem::factor_active() {
   const int n = static_cast<int>(active_rows_.size());
   if (n <= kDenseRows) {
     double* dense = dense_lu_.reset(n);
@@ -111,36 +99,63 @@ bool NewtonSystem::factor_and_solve() {
         dense[static_cast<std::size_t>(j) * n + inner_[k]] = values_[k];
       }
     }
-    return dense_lu_.solve(right_.data());
+    return dense_lu_.factor();
   }
   const Eigen::Map<const SparseMatrix> matrix(n, n, static_cast<Index>(values_.size()),
                                               outer_.data(), inner_.data(), values_.data());
   sparse_lu_.compute(matrix);
-  if (sparse_lu_.info() != Eigen::Success) {
-    return false;
-  }
-  Eigen::Map<Vector> right(right_.data(), n);
-  right = sparse_lu_.solve(right).eval();
-  return true;
+  return sparse_lu_.info() == Eigen::Success;
 }
 
-bool NewtonSystem::solve(const std::vector<Block>& A, const std::vector<Block>& B,
-                         const std::vector<Coupling>& couplings, double alpha, const Vector& F,
-                         Vector& dx) {
+bool NewtonSystem::factor(const std::vector<Block>& A, const std::vector<Block>& B,
+                          const std::vector<Coupling>& couplings, double alpha) {
+  B_ = &B;
   find_active(B, couplings);
-  dx = -F;
-  right_.resize(active_rows_.size());
-  for (std::size_t k = 0; k < active_rows_.size(); ++k) {
-    right_[k] = -F[active_rows_[k]];
-  }
   if (active_rows_.empty()) {
     return true;
   }
-  assemble(A, B, alpha, dx);
-  if (!factor_and_solve()) {
-    return false;
+  assemble(A, B, alpha);
+  return factor_active();
+}
+
+/// right_ = -F - B W dx - couplings, of the active rows, for a dx of the others.
+void NewtonSystem::set_right_side(const Vector& F, const Vector& dx) {
+  const auto& groups = function_->groups();
+  w_.noalias() = *W_ * dx;
+  right_.clear();
+  for (const int row : active_rows_) {
+    const int g = function_->group_of(row);
+    const int k = row - groups[g].first;
+    double sum = 0.0;
+    for (int j = 0; j < groups[g].dimension; ++j) {
+      sum += (*B_)[g](k, j) * w_[groups[g].first + j];
+    }
+    right_.push_back(-F[row] - sum);
   }
-  for (std::size_t k = 0; k < active_rows_.size(); ++k) {
+  for (Index j = 0; j < dx.size(); ++j) {
+    for (const auto& [row, value] : couplings_of_column_[j]) {
+      right_[active_row_[row]] -= value * dx[j];
+    }
+  }
+}
+
+bool NewtonSystem::solve(const Vector& F, Vector& dx) {
+  dx = -F;
+  if (active_rows_.empty()) {
+    return dx.allFinite();
+  }
+  for (const int row : active_rows_) {
+    dx[row] = 0.0;
+  }
+  set_right_side(F, dx);
+  const int n = static_cast<int>(active_rows_.size());
+  if (n <= kDenseRows) {
+    dense_lu_.solve(right_.data());
+  } else {
+    Eigen::Map<Vector> right(right_.data(), n);
+    right = sparse_lu_.solve(right).eval();
+  }
+  for (int k = 0; k < n; ++k) {
     dx[active_rows_[k]] = right_[k];
   }
   return dx.allFinite();

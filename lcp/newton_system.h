@@ -12,8 +12,8 @@ namespace signorini::lcp {
 ///
 ///     (A + B (W + alpha I)) dx = -F.
 ///
-/// Groups with B = 0 are solved by hand; the rest is factored, dense up to kDenseRows rows, sparse
-/// (LU with partial pivoting, Eigen) above.
+/// Groups with B = 0, where A must be I, are solved by hand; the rest is factored, dense up to
+/// kDenseRows rows, sparse (LU with partial pivoting, Eigen) above.
 class NewtonSystem {
  public:
   static constexpr int kDenseRows = 120;
@@ -21,21 +21,26 @@ class NewtonSystem {
   /// Keeps W. @param function its groups
   void set(const SparseMatrix& W, const AlartCurnierFunction& function);
 
-  /// @return false if the matrix is singular or the step is not finite; dx is then of no use.
-  [[nodiscard]] bool solve(const std::vector<AlartCurnierFunction::Block>& A,
-                           const std::vector<AlartCurnierFunction::Block>& B,
-                           const std::vector<AlartCurnierFunction::Coupling>& couplings,
-                           double alpha, const Vector& F, Vector& dx);
+  /// Keeps B until the last solve(). @return false if the matrix is singular; solve() must then not
+  /// be called.
+  [[nodiscard]] bool factor(const std::vector<AlartCurnierFunction::Block>& A,
+                            const std::vector<AlartCurnierFunction::Block>& B,
+                            const std::vector<AlartCurnierFunction::Coupling>& couplings,
+                            double alpha);
+  /// @return false if the step is not finite; dx is then of no use.
+  [[nodiscard]] bool solve(const Vector& F, Vector& dx);
 
  private:
   void find_active(const std::vector<AlartCurnierFunction::Block>& B,
                    const std::vector<AlartCurnierFunction::Coupling>& couplings);
   void assemble(const std::vector<AlartCurnierFunction::Block>& A,
-                const std::vector<AlartCurnierFunction::Block>& B, double alpha, const Vector& dx);
-  [[nodiscard]] bool factor_and_solve();
+                const std::vector<AlartCurnierFunction::Block>& B, double alpha);
+  [[nodiscard]] bool factor_active();
+  void set_right_side(const Vector& F, const Vector& dx);
 
   const SparseMatrix* W_ = nullptr;
   const AlartCurnierFunction* function_ = nullptr;
+  const std::vector<AlartCurnierFunction::Block>* B_ = nullptr;
   std::vector<char> group_is_active_;
   std::vector<int> active_row_;   // of every row, or -1
   std::vector<int> active_rows_;  // ascending
@@ -48,6 +53,7 @@ class NewtonSystem {
   std::vector<int> outer_, inner_;
   std::vector<double> values_;
   std::vector<double> right_;
+  Vector w_;
   DenseLu dense_lu_;
   Eigen::SparseLU<SparseMatrix, Eigen::COLAMDOrdering<int>> sparse_lu_;
 };
