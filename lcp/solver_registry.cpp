@@ -2,6 +2,7 @@
 #include <signorini/lcp/apgd.h>
 #include <signorini/lcp/auto_solver.h>
 #include <signorini/lcp/block_pivoting.h>
+#include <signorini/lcp/cone_interior_point.h>
 #include <signorini/lcp/dantzig.h>
 #include <signorini/lcp/interior_point.h>
 #include <signorini/lcp/lemke.h>
@@ -52,6 +53,7 @@ constexpr std::array kEntries = {
     Entry{"apgd", &make<Apgd, ApgdSettings>},
     Entry{"dantzig", &make<Dantzig, DantzigSettings>},
     Entry{"block-pivoting", &make<BlockPivoting, BlockPivotingSettings>},
+    Entry{"cone-interior-point", &make<ConeInteriorPoint, ConeInteriorPointSettings>},
     Entry{"alart-curnier", &make<AlartCurnier, AlartCurnierSettings>},
     Entry{"nsgs", &make<Nsgs, NsgsSettings>},
     Entry{"pgs", &make<Pgs, PgsSettings>},
