@@ -126,6 +126,7 @@ NarrowPhaseReport run_narrow_phase_study(const NarrowPhaseOptions& options, std:
   for (const Pair& pair : pairs) {
     Random random(options.seed);
     std::vector<PosePair> poses;
+    poses.reserve(options.poses);
     for (int k = 0; k < options.poses; ++k) {
       poses.push_back(touching(pair, k % 2 == 0, random));
     }
