@@ -331,6 +331,7 @@ class EventStepper::Run {
   [[nodiscard]] std::optional<FirstContact> first_contact(const std::vector<SegmentMotion>& motions,
                                                           double length) const {
     std::vector<const Motion*> pointers;
+    pointers.reserve(motions.size());
     for (const SegmentMotion& motion : motions) {
       pointers.push_back(&motion);
     }
