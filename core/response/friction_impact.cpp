@@ -38,15 +38,15 @@ class FrictionImpact {
   }
 
   SetOutcome resolve() {
-    lcp::Vector wish =
+    const lcp::Vector wish =
         settings_.law == ImpactLaw::kReflections ? solve_reflections() : solve_newton();
     if (!settings_.energy_safe) {
-      accept(out_.law.status, std::move(wish), 1.0);
+      accept(out_.law.status, wish, 1.0);
       return std::move(out_);
     }
     const bool exists = lcp::is_solved(out_.law.status) && is_in_cones(wish);
     if (exists && gains_nothing(wish)) {
-      accept(out_.law.status, std::move(wish), 1.0);
+      accept(out_.law.status, wish, 1.0);
     } else if (!solve_plastic()) {
       accept(out_.plastic.status, plastic_, kNaN);
     } else if (exists) {
