@@ -49,7 +49,7 @@ class Polytope {
  private:
   /// The point of A - B furthest along u; keeps the direction if it is among the best.
   Vec3 support(const Vec3& u) {
-    const Vec3 point = a_.support(u) - b_.support(-u);
+    Vec3 point = a_.support(u) - b_.support(-u);
     const double reach = u.dot(point);
     if (reach < least_) {
       least_ = reach;
