@@ -51,9 +51,10 @@ function(signorini_test_options target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
-# signorini_library(NAME SOURCES ... DEPENDS ...): target signorini_NAME, alias signorini::NAME.
+# signorini_library(NAME SOURCES ... DEPENDS ... [EXPORTS MAP]): target signorini_NAME, alias
+# signorini::NAME. A shared library exports what its linker script says, by default namespace signorini.
 function(signorini_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "" "EXPORTS" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
   set(target signorini_${name})
   add_library(${target} ${ARG_SOURCES})
   add_library(signorini::${name} ALIAS ${target})
@@ -65,7 +66,16 @@ function(signorini_library name)
   target_link_libraries(${target} PUBLIC ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE_DEPENDS})
   set_target_properties(${target} PROPERTIES
     EXPORT_NAME ${name} OUTPUT_NAME signorini-${name}
-    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR} POSITION_INDEPENDENT_CODE ON)
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR} POSITION_INDEPENDENT_CODE ON
+    INSTALL_RPATH $ORIGIN)
+  if(BUILD_SHARED_LIBS AND UNIX AND NOT APPLE)
+    set(map ${PROJECT_SOURCE_DIR}/cmake/signorini.map)
+    if(ARG_EXPORTS)
+      set(map ${ARG_EXPORTS})
+    endif()
+    target_link_options(${target} PRIVATE -Wl,--version-script=${map})
+    set_target_properties(${target} PROPERTIES LINK_DEPENDS ${map})
+  endif()
   set_property(GLOBAL APPEND PROPERTY SIGNORINI_LIBRARIES ${target})
 endfunction()
 
@@ -76,6 +86,7 @@ function(signorini_program name)
   signorini_compile_options(${name})
   target_link_libraries(${name} PRIVATE ${ARG_DEPENDS})
   target_include_directories(${name} PRIVATE ${SIGNORINI_INCLUDE_DIR})
+  set_target_properties(${name} PROPERTIES INSTALL_RPATH $ORIGIN/../${CMAKE_INSTALL_LIBDIR})
   set_property(GLOBAL APPEND PROPERTY SIGNORINI_PROGRAMS ${name})
 endfunction()
 

@@ -1,0 +1,285 @@
+/* The C API of Signorini: complementarity problems and contact problems, solved and certified.
+ *
+ * Stable: within one SOVERSION functions, enumerators and struct fields are only added. Structs
+ * that the library fills are passed with their size, so that a program keeps working with a library
+ * whose struct has grown at its end; structs that the library reads never change.
+ *
+ * Errors: functions that can fail return a signorini_error and leave their arguments as they were
+ * (pointers to write to are then set to null, numbers are left alone). signorini_last_error() says
+ * in words what was wrong, with the field, its value and the bound. No exception and no signal
+ * crosses this interface. How a solve *ended* is not an error but its signorini_status.
+ *
+ * Getters accept null and answer null, 0, NaN or SIGNORINI_NOT_RUN to it.
+ *
+ * Pointers to arrays may be null where the array is empty. Whatever is handed in is copied before
+ * the function returns; arrays that a getter hands out belong to the handle.
+ *
+ * Threads: a handle is for one thread at a time, different handles share nothing; solves of several
+ * threads may read one problem at once while nobody changes it. signorini_last_error() is the
+ * calling thread's own.
+ *
+ * Enumerations are int32_t, so that their width never changes and any number may be handed in.
+ *
+ * Counts are signed, so that a negative one is seen and refused. No function allocates more than a
+ * small multiple of the memory that its (plausible) arguments occupy; counts whose memory could not
+ * be addressed are refused before anything is read. */
+#ifndef SIGNORINI_C_SIGNORINI_H
+#define SIGNORINI_C_SIGNORINI_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(_WIN32)
+#define SIGNORINI_API
+#else
+#define SIGNORINI_API __attribute__((visibility("default")))
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** What was wrong with a call. */
+typedef int32_t signorini_error;
+enum {
+  SIGNORINI_OK = 0,
+  SIGNORINI_INVALID_ARGUMENT = 1, /**< nothing was changed; signorini_last_error() names it */
+  SIGNORINI_OUT_OF_MEMORY = 2,    /**< nothing was changed; a result is not run */
+  SIGNORINI_INTERNAL_ERROR = 3    /**< a defect of ours: please report it with its text */
+};
+
+/** The last error of the calling thread, one line, at most 1023 characters; "" if it had none.
+ * Valid until the thread's next call that fails. */
+SIGNORINI_API const char* signorini_last_error(void);
+
+/** The library's version, for example "0.1.0". */
+SIGNORINI_API const char* signorini_version(void);
+
+/* ---- statuses ------------------------------------------------------------------------------- */
+
+/** How a solve ended. Only the first two after NOT_RUN claim an answer; both are given by the
+ * certificate, recomputed from the caller's data. In all other cases z is the best iterate
+ * (NOT_RUN, INVALID_INPUT: NaN). */
+typedef int32_t signorini_status;
+enum {
+  SIGNORINI_NOT_RUN = 0,
+  SIGNORINI_SOLVED = 1,             /**< both residuals are within the tolerance */
+  SIGNORINI_SOLVED_TO_ROUNDING = 2, /**< above it, but at most four rounding floors and 1e-5 */
+  SIGNORINI_INFEASIBLE = 3,         /**< the ray proves that no z satisfies the bounds */
+  SIGNORINI_NO_SOLUTION_BELOW = 4,  /**< the ray proves |z|_1 >= ray_bound for every feasible z */
+  SIGNORINI_RAY_UNPROVEN = 5,       /**< ended on a ray that proves nothing */
+  SIGNORINI_ITERATION_LIMIT = 6,
+  SIGNORINI_TIME_LIMIT = 7,
+  SIGNORINI_STALLED = 8,             /**< no more progress, short of the tolerance */
+  SIGNORINI_NUMERICAL_BREAKDOWN = 9, /**< a pivot failed, or the certificate refused the answer */
+  SIGNORINI_INVALID_INPUT = 10       /**< NaN, infinity or crossed bounds; detail says where */
+};
+
+/** "solved", "solved to rounding", ...; "unknown status" for any other number. */
+SIGNORINI_API const char* signorini_status_text(signorini_status status);
+/** 1 for SOLVED and SOLVED_TO_ROUNDING, else 0. */
+SIGNORINI_API int signorini_is_solved(signorini_status status);
+
+/* ---- problems ------------------------------------------------------------------------------- */
+
+/** Find z and w = M z + q with, for every row, 0 <= z_i, 0 <= w_i, z_i w_i = 0; with bounds,
+ * friction limits and cones where they are set. Units are the caller's: with z in N s and w in m/s
+ * M is in 1/kg. A new problem has no rows. */
+typedef struct signorini_problem signorini_problem;
+
+typedef int32_t signorini_order;
+enum {
+  SIGNORINI_COLUMN_MAJOR = 0, /**< dense: M_ij at [j n + i]; sparse: compressed columns (CSC) */
+  SIGNORINI_ROW_MAJOR = 1     /**< dense: M_ij at [i n + j]; sparse: compressed rows (CSR) */
+};
+
+typedef int32_t signorini_mass_kind;
+enum {
+  SIGNORINI_INVERSE_MASS = 0, /**< the blocks are W_k */
+  SIGNORINI_MASS = 1          /**< the blocks are M_k = W_k^-1 */
+};
+
+typedef int32_t signorini_friction_law;
+enum {
+  SIGNORINI_COULOMB = 0,   /**< w + mu |w_T| n in the dual cone: Coulomb's law */
+  SIGNORINI_ASSOCIATED = 1 /**< w in the dual cone: convex; sliding contacts separate */
+};
+
+/** The most rows of a dense M: n^2 fits 32 bits (17 GB). */
+#define SIGNORINI_MAX_DENSE_ROWS 46340
+
+SIGNORINI_API signorini_error signorini_problem_create(signorini_problem** problem);
+/** Null is allowed. */
+SIGNORINI_API void signorini_problem_destroy(signorini_problem* problem);
+
+/** Gives M (n x n, may be nonsymmetric) and q (n) anew; bounds, limits and cones are forgotten.
+ * @param n 0 .. SIGNORINI_MAX_DENSE_ROWS */
+SIGNORINI_API signorini_error signorini_problem_set_dense(signorini_problem* problem, int64_t n,
+                                                          signorini_order order, const double* M,
+                                                          const double* q);
+
+/** The same with a sparse M in compressed columns or rows: the entries of column (row) j are
+ * start[j] .. start[j + 1] - 1 of index (their rows or columns, any order, none twice) and value.
+ * @param start n + 1 numbers, from 0 to entries, not descending @param n, entries below 2^31 */
+SIGNORINI_API signorini_error signorini_problem_set_sparse(signorini_problem* problem, int64_t n,
+                                                           signorini_order order, int64_t entries,
+                                                           const int32_t* start,
+                                                           const int32_t* index,
+                                                           const double* value, const double* q);
+
+/** The same with M = J W J^T + diag(c), never formed: J (n x m) in compressed rows, as above; W is
+ * block diagonal, its blocks of block_size[k] >= 1 rows (6 for a free rigid body) symmetric
+ * positive definite, one after the other in block_value, block_size[k]^2 numbers each; their sizes
+ * add up to m. Bodies that nothing moves have no columns; their velocity belongs in q.
+ * @param compliance c, n numbers >= 0; null: all 0 */
+SIGNORINI_API signorini_error signorini_problem_set_factored(
+    signorini_problem* problem, int64_t n, int64_t entries, const int32_t* start,
+    const int32_t* index, const double* value, int64_t blocks, const int32_t* block_size,
+    signorini_mass_kind kind, const double* block_value, const double* compliance, const double* q);
+
+/** Bounds lower_i <= z_i <= upper_i (-inf and inf allowed; both: a free row, w_i = 0): w_i >= 0 at
+ * the lower bound, <= 0 at the upper, 0 in between. Null: all 0, all inf.
+ * @param n the problem's rows */
+SIGNORINI_API signorini_error signorini_problem_set_bounds(signorini_problem* problem, int64_t n,
+                                                           const double* lower,
+                                                           const double* upper);
+
+/** Friction limits |z_row| <= coefficient z_normal_row, in place of the bounds of those rows and of
+ * the limits set before. coefficient >= 0, dimensionless. */
+SIGNORINI_API signorini_error signorini_problem_set_limits(signorini_problem* problem,
+                                                           int64_t count, const int32_t* row,
+                                                           const int32_t* normal_row,
+                                                           const double* coefficient);
+
+/** Friction cones |z_T| <= coefficient z_N over the rows normal_row (N) .. normal_row + dimension -
+ * 1 (T), ascending and disjoint, in place of the bounds of those rows and of the cones set before.
+ * @param dimension 2 or 3 each */
+SIGNORINI_API signorini_error signorini_problem_set_cones(signorini_problem* problem, int64_t count,
+                                                          const int32_t* normal_row,
+                                                          const int32_t* dimension,
+                                                          const double* coefficient,
+                                                          signorini_friction_law law);
+
+/** The number of rows. */
+SIGNORINI_API int64_t signorini_problem_size(const signorini_problem* problem);
+/** q, n numbers, to read or to write before the next solve; valid until the problem is set anew. */
+SIGNORINI_API double* signorini_problem_q(signorini_problem* problem);
+/** The numbers of M, to read or to write: dense, n^2 by columns; sparse, the entries by columns,
+ * rows ascending; factored: null. Valid until the problem is set anew. */
+SIGNORINI_API double* signorini_problem_matrix(signorini_problem* problem, int64_t* count);
+
+/* ---- solvers and results -------------------------------------------------------------------- */
+
+typedef struct signorini_solver signorini_solver; /**< settings and workspace */
+typedef struct signorini_result signorini_result; /**< what a solve returns */
+
+/** How good z is, recomputed from the caller's data; see lcp/certificate.h for the equations. */
+typedef struct signorini_certificate {
+  double natural_residual;   /**< max |min(z, w)| / (1 + |q|) */
+  double unit_free_residual; /**< max |min(M_ii z_i, w_i)| / |q| */
+  double rounding_floor;     /**< what rounding z costs the unit-free residual */
+  double natural_floor;      /**< what it costs the natural residual */
+  double backward_error;
+  double min_z;
+  double min_w;
+  double complementarity; /**< |z.w| */
+  double cone_violation;
+  int32_t worst_row; /**< of the unit-free residual, -1: none */
+  int32_t reserved;
+} signorini_certificate;
+
+/** What a solve cost; -1: the solver has no such thing. */
+typedef struct signorini_statistics {
+  int64_t iterations;
+  int64_t pivots;
+  int64_t factorizations;
+  int64_t refinements;
+  int64_t factor_bytes;
+  double solve_seconds;
+} signorini_statistics;
+
+/** One solver's part in a solve that tried several ("auto"). Texts are valid as long as the result.
+ */
+typedef struct signorini_attempt {
+  const char* solver;
+  const char* reason;
+  const char* detail;
+  double natural_residual;
+  double unit_free_residual;
+  double solve_seconds;
+  int64_t iterations;
+  int64_t pivots;
+  signorini_status status;
+  int32_t reserved;
+} signorini_attempt;
+
+/** The solvers' names, null-terminated: "auto", "lemke", "interior-point", ... */
+SIGNORINI_API const char* const* signorini_solver_names(void);
+
+/** @param name one of signorini_solver_names() */
+SIGNORINI_API signorini_error signorini_solver_create(const char* name, signorini_solver** solver);
+SIGNORINI_API void signorini_solver_destroy(signorini_solver* solver);
+
+/** Settings by name: "tolerance" (of both residuals, in (0, 1), default 1e-8), "max_iterations"
+ * (whole, in the solver's own unit; -1, the default: its own), "time_limit" (s, > 0, default inf),
+ * "certify_islands" (0 or 1, default 0). A refused value leaves the one before. */
+SIGNORINI_API signorini_error signorini_solver_set_number(signorini_solver* solver,
+                                                          const char* setting, double value);
+/** "dump": DIR[:OPTION[,OPTION]...], where every solve is written as a problem folder that
+ * signorini-solve replays (docs/problem-folders.md); "", the default: nowhere. */
+SIGNORINI_API signorini_error signorini_solver_set_text(signorini_solver* solver,
+                                                        const char* setting, const char* value);
+
+/** A result that is not run. */
+SIGNORINI_API signorini_error signorini_result_create(signorini_result** result);
+SIGNORINI_API void signorini_result_destroy(signorini_result* result);
+
+/** Solves. SIGNORINI_OK says that the solver ran; signorini_result_status() how it ended.
+ * SIGNORINI_INVALID_ARGUMENT: among others, a solver that does not take such a problem.
+ * @param warm_start null, or one number a row to start from; solvers that cannot use it pass over
+ * it
+ * @param result written whole; unchanged if the call fails with SIGNORINI_INVALID_ARGUMENT */
+SIGNORINI_API signorini_error signorini_solver_solve(signorini_solver* solver,
+                                                     const signorini_problem* problem,
+                                                     const double* warm_start,
+                                                     signorini_result* result);
+
+SIGNORINI_API signorini_status signorini_result_status(const signorini_result* result);
+/** The solver's name, with the variant that ended the solve: "auto: dantzig". */
+SIGNORINI_API const char* signorini_result_solver(const signorini_result* result);
+/** Why it ended so and whatever was done beside the plain method, one line; "": nothing to add. */
+SIGNORINI_API const char* signorini_result_detail(const signorini_result* result);
+/** The number of rows. */
+SIGNORINI_API int64_t signorini_result_size(const signorini_result* result);
+/** z and w = M z + q, one number a row; like all that follows valid until the result's next solve.
+ */
+SIGNORINI_API const double* signorini_result_z(const signorini_result* result);
+SIGNORINI_API const double* signorini_result_w(const signorini_result* result);
+/** The ray on which the solve ended, one number a row, or null. */
+SIGNORINI_API const double* signorini_result_ray(const signorini_result* result);
+/** Every feasible z has |z|_1 >= this; 0: nothing is known. */
+SIGNORINI_API double signorini_result_ray_bound(const signorini_result* result);
+/** @param bytes sizeof(signorini_certificate), and so on below: that much is written at most */
+SIGNORINI_API signorini_error signorini_result_certificate(const signorini_result* result,
+                                                           signorini_certificate* certificate,
+                                                           size_t bytes);
+SIGNORINI_API signorini_error signorini_result_statistics(const signorini_result* result,
+                                                          signorini_statistics* statistics,
+                                                          size_t bytes);
+SIGNORINI_API int64_t signorini_result_attempt_count(const signorini_result* result);
+SIGNORINI_API signorini_error signorini_result_attempt(const signorini_result* result,
+                                                       int64_t number, signorini_attempt* attempt,
+                                                       size_t bytes);
+/** With the setting "certify_islands": how many sets of rows nothing connects, else 0; the island
+ * of every row (null without); the certificate of each by itself. */
+SIGNORINI_API int64_t signorini_result_island_count(const signorini_result* result);
+SIGNORINI_API const int32_t* signorini_result_island_of_row(const signorini_result* result);
+SIGNORINI_API signorini_error
+signorini_result_island_certificate(const signorini_result* result, int64_t island,
+                                    signorini_certificate* certificate, size_t bytes);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
