@@ -65,6 +65,17 @@ signorini_error guard(Body body) noexcept {
   }
 }
 
+/// `number` if `items` has such a place. @throws std::invalid_argument if not
+template <typename Items>
+std::int64_t checked_place(const Items& items, std::int64_t number, const char* name) {
+  const auto count = static_cast<std::int64_t>(items.size());
+  if (number < 0 || number >= count) {
+    refuse(std::string(name) + ": must be in [0, " + std::to_string(count) + "), got " +
+           std::to_string(number));
+  }
+  return number;
+}
+
 /// Writes as much of `full` as the caller's struct has room for.
 template <typename Struct>
 void copy_out(const Struct& full, Struct* out, size_t bytes) {

@@ -55,16 +55,6 @@ const lcp::Result& result_of(const signorini_result* handle) {
   return handle == nullptr ? kNone : handle->result;
 }
 
-template <typename Items>
-std::int64_t checked_place(const Items& items, std::int64_t number, const char* name) {
-  const auto count = static_cast<std::int64_t>(items.size());
-  if (number < 0 || number >= count) {
-    refuse(std::string(name) + ": must be in [0, " + std::to_string(count) + "), got " +
-           std::to_string(number));
-  }
-  return number;
-}
-
 }  // namespace
 }  // namespace signorini::c
 

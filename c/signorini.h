@@ -278,6 +278,124 @@ SIGNORINI_API signorini_error
 signorini_result_island_certificate(const signorini_result* result, int64_t island,
                                     signorini_certificate* certificate, size_t bytes);
 
+/* ---- contacts ------------------------------------------------------------------------------- */
+
+/* For a host with its own bodies, collision detection and integrator: in each step, after its
+ * forces and before it moves anything, it hands over bodies and contacts and gets the contact
+ * impulses and the new velocities. SI units, right-handed, world axes but where body axes are said.
+ */
+
+typedef int32_t signorini_body_kind;
+enum {
+  SIGNORINI_DYNAMIC = 0,   /**< moved by forces */
+  SIGNORINI_KINEMATIC = 1, /**< driven: its velocity is given and no force changes it */
+  SIGNORINI_FIXED = 2      /**< never moves; its velocity must be 0 */
+};
+
+typedef int32_t signorini_friction_model;
+enum {
+  SIGNORINI_PYRAMID = 0, /**< pyramid_sides sides inside the cone; the first along the slip */
+  SIGNORINI_CONE = 1,    /**< Coulomb's cone, the default */
+  SIGNORINI_BOX = 2      /**< both tangents bounded apart */
+};
+
+/** Fill it whole; its layout never changes. */
+typedef struct signorini_body {
+  signorini_body_kind kind;
+  int32_t reserved;
+  double mass;           /**< kg, > 0 (dynamic bodies) */
+  double inertia[9];     /**< about the centre of mass, body axes, symmetric, kg m^2 (dynamic) */
+  double position[3];    /**< of the centre of mass, m */
+  double orientation[4]; /**< unit quaternion w, x, y, z: body axes to world axes */
+  double linear_velocity[3];  /**< of the centre of mass, after the step's forces, m/s */
+  double angular_velocity[3]; /**< rad/s */
+} signorini_body;
+
+/** Fill it whole; its layout never changes. */
+typedef struct signorini_contact {
+  int32_t body_a; /**< numbers in the array of bodies, different, one at least dynamic */
+  int32_t body_b;
+  double point_a[3];   /**< on the surface of A, m */
+  double point_b[3];   /**< on the surface of B, m */
+  double normal[3];    /**< unit, from B to A: an impulse f >= 0 pushes A along it, B against it */
+  double gap;          /**< normal.(point_a - point_b), m; > 0 apart, < 0 overlapping */
+  double friction;     /**< Coulomb's mu of the pair, >= 0 */
+  double restitution;  /**< e of the pair, in [0, 1]; acts where gap <= "touching_tolerance" */
+  double allowance;    /**< m/s: how fast the gap may close, negative: must open; NaN: max(gap, 0) /
+                            step, with restitution e times the approach velocity */
+  uint64_t feature_id; /**< the same pair of features has the same id from step to step */
+} signorini_contact;
+
+/** What was solved for one island, a set of contacts that no dynamic body connects with others. */
+typedef struct signorini_island {
+  double unit_free_residual;
+  int32_t bodies; /**< dynamic ones */
+  int32_t contacts;
+  int32_t rows; /**< of its problem */
+  signorini_status status;
+} signorini_island;
+
+typedef struct signorini_contact_solver signorini_contact_solver; /**< settings and memory */
+typedef struct signorini_contact_result signorini_contact_result;
+
+SIGNORINI_API signorini_error signorini_contact_solver_create(signorini_contact_solver** solver);
+SIGNORINI_API void signorini_contact_solver_destroy(signorini_contact_solver* solver);
+
+/** Settings by name: those of signorini_solver_set_number() but "certify_islands", and
+ * "friction_model" (default SIGNORINI_CONE), "pyramid_sides" (even, >= 4, default 8), "warm_start"
+ * (0 or 1, default 1: starts from the impulses of the solve before), "touching_tolerance" (m, >= 0,
+ * default 1e-6), "restitution_threshold" (m/s, >= 0, default 0: slower contacts do not bounce). */
+SIGNORINI_API signorini_error signorini_contact_solver_set_number(signorini_contact_solver* solver,
+                                                                  const char* setting,
+                                                                  double value);
+/** "solver": one of signorini_solver_names(), default "auto"; "dump" as
+ * signorini_solver_set_text(). */
+SIGNORINI_API signorini_error signorini_contact_solver_set_text(signorini_contact_solver* solver,
+                                                                const char* setting,
+                                                                const char* value);
+
+SIGNORINI_API signorini_error signorini_contact_result_create(signorini_contact_result** result);
+SIGNORINI_API void signorini_contact_result_destroy(signorini_contact_result* result);
+
+/** Finds all contact impulses at once: M (v+ - v) = J^T f, 0 <= f, J_n v+ + allowance >= 0,
+ * complementary, and friction. Where an island is not solved its best iterate is in the result, and
+ * the status and detail say so.
+ * @param step h, s, > 0 @param result written whole; unchanged with SIGNORINI_INVALID_ARGUMENT */
+SIGNORINI_API signorini_error signorini_contact_solver_solve(
+    signorini_contact_solver* solver, double step, int64_t body_count, const signorini_body* bodies,
+    int64_t contact_count, const signorini_contact* contacts, signorini_contact_result* result);
+
+/** Of the islands the first that is not solved, else solved to rounding if one is. */
+SIGNORINI_API signorini_status
+signorini_contact_result_status(const signorini_contact_result* result);
+SIGNORINI_API const char* signorini_contact_result_detail(const signorini_contact_result* result);
+SIGNORINI_API int64_t signorini_contact_result_body_count(const signorini_contact_result* result);
+SIGNORINI_API int64_t
+signorini_contact_result_contact_count(const signorini_contact_result* result);
+/** v+, 6 numbers a body: linear (of the centre of mass), angular. */
+SIGNORINI_API const double* signorini_contact_result_velocities(
+    const signorini_contact_result* result);
+/** The impulse of every contact on its body A, 3 numbers, N s; on B: minus that. */
+SIGNORINI_API const double* signorini_contact_result_impulses(
+    const signorini_contact_result* result);
+/** f of every contact, N s. */
+SIGNORINI_API const double* signorini_contact_result_normal_impulses(
+    const signorini_contact_result* result);
+/** Change of the kinetic energy by the impulses, J. */
+SIGNORINI_API double signorini_contact_result_energy_change(const signorini_contact_result* result);
+/** Of the island that ended worst; NaN without contacts. */
+SIGNORINI_API signorini_error signorini_contact_result_certificate(
+    const signorini_contact_result* result, signorini_certificate* certificate, size_t bytes);
+/** Of that island; solve_seconds: of all. */
+SIGNORINI_API signorini_error signorini_contact_result_statistics(
+    const signorini_contact_result* result, signorini_statistics* statistics, size_t bytes);
+SIGNORINI_API int64_t signorini_contact_result_island_count(const signorini_contact_result* result);
+/** The island of every contact. */
+SIGNORINI_API const int32_t* signorini_contact_result_island_of_contact(
+    const signorini_contact_result* result);
+SIGNORINI_API signorini_error signorini_contact_result_island(
+    const signorini_contact_result* result, int64_t number, signorini_island* island, size_t bytes);
+
 #ifdef __cplusplus
 }
 #endif

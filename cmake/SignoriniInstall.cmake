@@ -31,7 +31,7 @@ if(TARGET signorini_c)  # whose other headers are its own
 endif()
 
 # Of its libraries a static build must name all when it is linked, a shared one its interface.
-set(SIGNORINI_C_NEEDS lcp)
+set(SIGNORINI_C_NEEDS lcp model core)
 if(TARGET signorini_io)
   list(APPEND SIGNORINI_C_NEEDS io)
 endif()

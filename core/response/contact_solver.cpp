@@ -1,0 +1,184 @@
+#include <signorini/core/model/number_text.h>
+#include <signorini/core/response/assembly.h>
+#include <signorini/core/response/contact_islands.h>
+#include <signorini/core/response/contact_solver.h>
+#include <signorini/core/response/set_impact.h>
+#include <signorini/core/response/tangent_rows.h>
+#include <signorini/lcp/certificate.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace signorini {
+namespace {
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw std::invalid_argument("contact solver: " + what);
+}
+
+void check_allowance(const lcp::VectorRef& allowance, std::size_t contacts) {
+  if (allowance.size() != static_cast<lcp::Index>(contacts)) {
+    refuse("allowance: " + std::to_string(allowance.size()) + " numbers for " +
+           std::to_string(contacts) + " contacts");
+  }
+  for (lcp::Index i = 0; i < allowance.size(); ++i) {
+    if (!std::isfinite(allowance[i])) {
+      refuse("allowance[" + std::to_string(i) + "]: must be finite, got " +
+             number_text(allowance[i]) + " m/s");
+    }
+  }
+}
+
+bool is_worse(const lcp::Result& a, const lcp::Result& b) {
+  const bool solved = lcp::is_solved(a.status);
+  if (solved != lcp::is_solved(b.status)) {
+    return !solved;
+  }
+  return solved && a.certificate.unit_free_residual > b.certificate.unit_free_residual;
+}
+
+/// Keeps the worse result in `kept`, with the sum of both times.
+void keep_worse(lcp::Result&& result, lcp::Result& kept) {
+  const double seconds =
+      std::max(result.statistics.solve_seconds, 0.0) + std::max(kept.statistics.solve_seconds, 0.0);
+  if (kept.status == lcp::Status::kNotRun || is_worse(result, kept)) {
+    kept = std::move(result);
+  }
+  kept.statistics.solve_seconds = seconds;
+}
+
+IslandReport describe(const ContactIsland& island, const lcp::Problem& problem,
+                      const lcp::Result& result, FrictionModel model) {
+  IslandReport report;
+  report.bodies = static_cast<int>(
+      std::ranges::count_if(island.bodies, [](const Body& body) { return body.is_dynamic(); }));
+  report.contacts = static_cast<int>(island.contacts.size());
+  report.rows = static_cast<int>(problem.size());
+  report.model = (report.contacts == 1 ? "single contact, " : "") +
+                 std::string(report.rows > report.contacts ? to_string(model) : "frictionless");
+  report.solver = result.solver;
+  report.status = result.status;
+  report.unit_free_residual = result.certificate.unit_free_residual;
+  return report;
+}
+
+/// An island's impulses into the solution. @return whether they are finite
+bool collect(const VelocityProblem& velocity, const ContactSet& contacts,
+             const std::vector<int>& members, const lcp::Result& result,
+             ContactSolution& solution) {
+  const bool usable = result.z.allFinite();
+  if (!lcp::is_solved(result.status)) {
+    solution.detail += (solution.detail.empty() ? "island " : "; island ") +
+                       std::to_string(solution.islands.size() - 1) + ": " +
+                       std::string(lcp::to_string(result.status)) +
+                       (usable ? ", best iterate applied" : ", no impulses applied");
+  }
+  solution.status = worse(solution.status, result.status);
+  if (usable) {
+    const lcp::Vector normals = velocity.normal_impulses(result.z);
+    const std::vector<Vec3> impulses = velocity.impulses(contacts, result.z);
+    for (std::size_t j = 0; j < members.size(); ++j) {
+      solution.normal_impulses[members[j]] = normals[static_cast<lcp::Index>(j)];
+      solution.impulses[members[j]] = impulses[j];
+    }
+  }
+  return usable;
+}
+
+}  // namespace
+
+void ContactSolverSettings::validate() const {
+  if (pyramid_sides < 4 || pyramid_sides % 2 != 0) {
+    refuse("pyramid_sides: must be even and >= 4, got " + std::to_string(pyramid_sides));
+  }
+  if (friction_model > FrictionModel::kBox) {
+    refuse("friction_model: must be one of the three models, got " +
+           std::to_string(static_cast<int>(friction_model)));
+  }
+  lcp.validate();
+}
+
+ContactSolver::ContactSolver(const ContactSolverSettings& settings) : settings_(settings) {
+  settings_.validate();
+  solver_ = lcp::make_solver(settings_.solver, settings_.lcp);
+}
+
+void ContactSolver::solve_island(const VelocityProblem& velocity, const ContactSet& contacts,
+                                 lcp::Result& result) {
+  const lcp::Problem& problem = velocity.problem();
+  result.z = velocity.closed_form();
+  if (result.z.size() > 0) {
+    result.solver = "closed form";
+    result.certificate = lcp::certify(problem, result.z, &result.w);
+    result.status =
+        lcp::judge(result.certificate, settings_.lcp.tolerance, lcp::Status::kNumericalBreakdown);
+    if (lcp::is_solved(result.status)) {
+      return;
+    }
+  }
+  const bool warm = settings_.warm_start && velocity.recall(contacts, memory_, start_) > 0;
+  solver_->solve(problem, result, warm ? &start_ : nullptr);
+}
+
+void ContactSolver::solve(const Bodies& bodies, const ContactSet& contacts,
+                          const lcp::VectorRef& allowance, State& state,
+                          ContactSolution& solution) {
+  for (const Body& body : bodies) {
+    validate(body);
+  }
+  validate(bodies, state);
+  validate(contacts, static_cast<int>(bodies.size()));
+  check_allowance(allowance, contacts.size());
+  check_dynamic(bodies, contacts);
+
+  ContactSolution fresh;
+  fresh.status = lcp::Status::kSolved;
+  fresh.normal_impulses = lcp::Vector::Zero(allowance.size());
+  fresh.impulses.assign(contacts.size(), Vec3::Zero());
+  fresh.island_of.assign(contacts.size(), -1);
+  next_memory_.forget();
+  for (const ContactIsland& island : contact_islands(bodies, state, contacts, allowance)) {
+    VelocityProblem velocity;
+    velocity.assemble(settings_.friction_model, island.bodies, island.state, island.contacts,
+                      island.allowance, settings_.pyramid_sides);
+    ContactSet members;  // with the body numbers of the scene, which memory knows
+    members.reserve(island.members.size());
+    for (const int i : island.members) {
+      members.push_back(contacts[i]);
+      fresh.island_of[i] = static_cast<int>(fresh.islands.size());
+    }
+    lcp::Result result;
+    solve_island(velocity, members, result);
+    fresh.islands.push_back(describe(island, velocity.problem(), result, settings_.friction_model));
+    if (collect(velocity, members, island.members, result, fresh)) {
+      velocity.remember(members, result.z, next_memory_);
+    }
+    keep_worse(std::move(result), fresh.result);
+  }
+  next_memory_.sort();
+  std::swap(memory_, next_memory_);
+
+  const double before = kinetic_energy(bodies, state);
+  apply_contact_impulses(bodies, contacts, fresh.impulses, state);
+  fresh.energy_change = kinetic_energy(bodies, state) - before;
+  solution = std::move(fresh);
+}
+
+lcp::Vector allowances(const Bodies& bodies, const State& state, const ContactSet& contacts,
+                       double h, double touching_tolerance, double restitution_threshold) {
+  const lcp::Vector d_dot = gap_velocities(bodies, state, contacts);
+  lcp::Vector allowance(d_dot.size());
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const double e = contacts[i].material.restitution;
+    const bool bounces = contacts[i].gap <= touching_tolerance &&
+                         d_dot[static_cast<lcp::Index>(i)] < -restitution_threshold;
+    allowance[static_cast<lcp::Index>(i)] =
+        bounces ? e * d_dot[static_cast<lcp::Index>(i)] : std::max(contacts[i].gap, 0.0) / h;
+  }
+  return allowance;
+}
+
+}  // namespace signorini
