@@ -21,9 +21,10 @@ struct Kind {
   const char* name;
 };
 constexpr Kind kKinds[] = {
-    {ShapeKind::kSphere, "sphere"},
-    {ShapeKind::kBox, "box"},
-    {ShapeKind::kHalfSpace, "half-space"},
+    {ShapeKind::kSphere, "sphere"},   {ShapeKind::kBox, "box"},
+    {ShapeKind::kCapsule, "capsule"}, {ShapeKind::kCylinder, "cylinder"},
+    {ShapeKind::kCone, "cone"},       {ShapeKind::kEllipsoid, "ellipsoid"},
+    {ShapeKind::kHull, "hull"},       {ShapeKind::kHalfSpace, "half-space"},
 };
 
 PlacedPair pose_of(Random& random, const Kind& a, const Kind& b, long number) {

@@ -56,12 +56,22 @@ std::vector<Vec3> directions_about(const Vec3& N, Random& random) {
   return result;
 }
 
+/// Sphere, box and half-space meet each other in closed forms (two boxes: with a preference for
+/// faces); the other pairs by a search.
+bool has_closed_form(const Shape& shape) {
+  return std::holds_alternative<Sphere>(shape) || std::holds_alternative<Box>(shape) ||
+         std::holds_alternative<HalfSpace>(shape);
+}
+
 class Judge {
  public:
   Judge(const PlacedPair& pair, double margin, Random& random)
       : pair_(pair), margin_(margin), random_(random) {
     const bool boxes = std::holds_alternative<Box>(pair.a) && std::holds_alternative<Box>(pair.b);
-    allowed_ = (boxes ? 2e-6 : 1e-9) * pair.size + 200.0 * pair.rounding;
+    const bool closed_form = has_closed_form(pair.a) && has_closed_form(pair.b);
+    const double rounding = 200.0 * pair.rounding;
+    allowed_ = (boxes ? 2e-6 : (closed_form ? 1e-9 : 1e-8)) * pair.size + rounding;
+    allowed_of_contacts_ = (boxes || !closed_form ? 2e-6 : 1e-9) * pair.size + rounding;
     verdict_.fill(0.0);
   }
 
@@ -76,9 +86,15 @@ class Judge {
   }
 
  private:
+  [[nodiscard]] double allowed(PairProperty property) const {
+    const bool of_distance =
+        property == PairProperty::kNoBetter || property == PairProperty::kTest ||
+        property == PairProperty::kExchange || property == PairProperty::kRigidMotion;
+    return of_distance ? allowed_ : allowed_of_contacts_;
+  }
   void off_by(PairProperty property, double metres) {
     double& worst = verdict_[static_cast<std::size_t>(property)];
-    const double off = metres / allowed_;
+    const double off = metres / allowed(property);
     worst = std::isnan(off) ? kInfinity : std::max(worst, off);
   }
   void fail(PairProperty property) { verdict_[static_cast<std::size_t>(property)] = kInfinity; }
@@ -110,7 +126,7 @@ class Judge {
     const std::vector<Contact> contacts = contacts_of(pair_, margin_);
     if (contacts.empty()) {
       if (std::isfinite(d_) && d_ <= margin_) {
-        off_by(PairProperty::kNothingMissed, std::max(margin_ - d_, 2.0 * allowed_));
+        off_by(PairProperty::kNothingMissed, std::max(margin_ - d_, 2.0 * allowed_of_contacts_));
       }
       return;
     }
@@ -153,7 +169,8 @@ class Judge {
   const PlacedPair& pair_;
   double margin_;
   Random& random_;
-  double allowed_;
+  double allowed_;              ///< of a distance, m
+  double allowed_of_contacts_;  ///< of a gap and a point
   double d_ = 0.0;
   PairVerdict verdict_;
 };

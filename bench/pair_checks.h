@@ -33,8 +33,10 @@ using PairVerdict = std::array<double, kPairProperties>;
 /// apart. Where they overlap d = max s(n): N itself and 40 directions around it and at random are
 /// tried.
 ///
-/// Allowed: 2e-6 of the smaller size (two boxes: the tolerance by which faces are preferred,
-/// box_separation.h) or 1e-9 (other pairs), and 200 roundings of the pair's numbers.
+/// Allowed, of the smaller size: 1e-9 between sphere, box and half-space; of the pairs that are
+/// found by a search (convex_pairs.h) 1e-8 of a distance; 2e-6 of what is said of contacts where
+/// faces are preferred by a tolerance (box_separation.h, separation.h); and 200 roundings of the
+/// pair's numbers.
 [[nodiscard]] PairVerdict judge_pair(const collision::testing::PlacedPair& pair, double margin,
                                      collision::testing::Random& random);
 

@@ -122,6 +122,7 @@ void find_between(const Segment& a, const Segment& b, double margin,
     add(a, b, nearest, N, gap, contacts);
     return;
   }
+  const std::size_t before = contacts.size();
   for (const double s : stretch) {
     // The end is of A or of B; the other's parameter must name its end exactly.
     const double t = b.nearest_to(a.at(s));
@@ -133,6 +134,9 @@ void find_between(const Segment& a, const Segment& b, double margin,
     if (end_gap <= std::max(margin, gap)) {
       add(a, b, end, N, end_gap, contacts);
     }
+  }
+  if (contacts.size() == before) {  // rounding put both ends above the margin
+    add(a, b, nearest, N, gap, contacts);
   }
 }
 

@@ -71,6 +71,16 @@ struct Facet {
 
   [[nodiscard]] bool is_disc() const { return disc_radius > 0.0; }
   [[nodiscard]] bool is_polygon() const { return !is_disc() && corners.size() >= 3; }
+
+  /// A facet without corners, which keeps its memory.
+  void reset(Feature number, const Vec3& outward) {
+    corners.clear();
+    face = number;
+    normal = outward;
+    disc_radius = 0.0;
+    disc_centre.setZero();
+    rim = 0;
+  }
 };
 
 /// A convex shape in the frame of a query: all points within `rounding` of a core.
@@ -83,7 +93,8 @@ class Convex {
   /// Every piece of the core's surface that carries a normal within `angle` (radians, roughly) of
   /// n; those that carry n itself always.
   virtual void add_strata(const Vec3& n, double angle, std::vector<Stratum>& strata) const = 0;
-  [[nodiscard]] virtual Facet facet(const Vec3& n) const = 0;
+  /// @param facet replaced
+  virtual void facet(const Vec3& n, Facet& facet) const = 0;
 
   [[nodiscard]] double rounding() const { return rounding_; }
   [[nodiscard]] const Vec3& centre() const { return centre_; }

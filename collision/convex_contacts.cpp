@@ -31,6 +31,19 @@ Contact between(const Side& a, const Side& b, const Vec3& N, double gap, NormalO
   return contact;
 }
 
+/// What a query works on: kept from query to query of a thread.
+struct ContactMemory {
+  Separation separation;
+  Facet reference;
+  Facet incident;
+  std::vector<FacetPoint> points;
+};
+
+ContactMemory& memory() {
+  thread_local ContactMemory of_this_thread;
+  return of_this_thread;
+}
+
 // A face meets the other shape.
 
 struct FaceContacts {
@@ -55,7 +68,8 @@ struct FaceContacts {
 
 /// The free piece of a shape's surface that reaches furthest along n.
 Stratum piece_towards(const Convex& shape, const Vec3& n) {
-  std::vector<Stratum> pieces;
+  thread_local std::vector<Stratum> pieces;
+  pieces.clear();
   shape.add_strata(n, 0.0, pieces);
   const Stratum* best = nullptr;
   for (const Stratum& piece : pieces) {
@@ -141,13 +155,14 @@ void find_on_parallel_lines(const Segment& a, const Segment& b, const Vec3& N, d
   }
 }
 
-/// The nearest points of two lines that are not parallel, held within their ends. Returns how far
-/// they are from lying across each other.
+/// The nearest points of two lines, held within their ends (of parallel lines that do not face each
+/// other: of their ends). Returns how far they are from lying across each other.
 double cross(const Segment& a, const Segment& b, const Vec3& N, double distance, Contact& contact) {
   const Vec3& u = a.direction;
   const Vec3& v = b.direction;
   const Vec3 offset = b.origin - a.origin;
-  const double crossing = (u - u.dot(v) * v).dot(offset) / u.cross(v).squaredNorm();
+  const double sine_squared = u.cross(v).squaredNorm();
+  const double crossing = sine_squared > 0.0 ? (u - u.dot(v) * v).dot(offset) / sine_squared : 0.0;
   const double s0 = std::clamp(crossing, a.line.range[0], a.line.range[1]);
   const double t = std::clamp(v.dot(s0 * u - offset), b.line.range[0], b.line.range[1]);
   const double s = std::clamp(u.dot(offset + t * v), a.line.range[0], a.line.range[1]);
@@ -180,9 +195,10 @@ double distance_to(const Convex& shape, const Stratum& piece, const Vec3& outwar
     return (core - piece.point(outward)).norm();
   }
   if (piece.kind == Kind::kFace) {
-    return is_over(shape.facet(outward), core, 1e-6 * shape.size())
-               ? 0.0
-               : std::numeric_limits<double>::infinity();
+    Facet& facet = memory().reference;
+    shape.facet(outward, facet);
+    return is_over(facet, core, 1e-6 * shape.size()) ? 0.0
+                                                     : std::numeric_limits<double>::infinity();
   }
   const Vec3 origin = piece.line_point(outward);
   const Vec3 direction = piece.direction(outward);
@@ -248,8 +264,12 @@ void find_contacts_on_face(const Convex& a, const Convex& b, const FacingFace& f
   const Convex& other = face.of_a ? b : a;
   const Vec3 outward = face.of_a ? Vec3(-face.normal) : face.normal;
   const double slack = preference_tolerance(a, b);
-  const Facet reference = owner.facet(outward);
-  const std::vector<FacetPoint> points = clip_facet(other.facet(-outward), reference, slack);
+  Facet& reference = memory().reference;
+  Facet& incident = memory().incident;
+  std::vector<FacetPoint>& points = memory().points;
+  owner.facet(outward, reference);
+  other.facet(-outward, incident);
+  clip_facet(incident, reference, slack, points);
 
   // Rounding of the heights must not lose the one contact of shapes that are margin apart.
   const double highest = std::max(margin, face.separation);
@@ -270,16 +290,19 @@ void find_contacts_on_face(const Convex& a, const Convex& b, const FacingFace& f
 
 void find_contacts(const Convex& a, const Convex& b, double margin,
                    std::vector<Contact>& contacts) {
-  const Separation found = separate(a, b);
+  Separation& found = memory().separation;
+  separate(a, b, found);
   if (found.distance > margin) {
     return;
   }
+  const std::size_t before = contacts.size();
   if (found.face) {
-    const std::size_t before = contacts.size();
     find_contacts_on_face(a, b, *found.face, margin, contacts);
-    if (contacts.size() > before) {
+    // Where the face misses the deepest point (a rim beside its edge) it carries no contact set.
+    if (least_gap(contacts, before) <= found.distance + 2.0 * preference_tolerance(a, b)) {
       return;
     }
+    contacts.resize(before);
   }
   double least = std::numeric_limits<double>::infinity();
   Contact nearest;
@@ -288,7 +311,7 @@ void find_contacts(const Convex& a, const Convex& b, double margin,
       find_on_parallel_lines(
           Segment(a, meeting.a, -meeting.normal), Segment(b, meeting.b, meeting.normal),
           meeting.normal, std::max(margin, found.distance), preference_tolerance(a, b), contacts);
-      if (!contacts.empty()) {
+      if (contacts.size() > before) {
         return;
       }
     }
@@ -309,13 +332,18 @@ void find_contacts(const Convex& a, const Vec3& n, const Vec3& on_plane, double 
                    std::vector<Contact>& contacts) {
   const Deepest deepest(a, -n);
   const double least = n.dot(deepest.core - on_plane) - a.rounding();
+  if (least > margin) {
+    return;
+  }
   FaceContacts found{false, n, a.rounding(), margin, contacts};
   const std::size_t first = contacts.size();
   const auto add = [&](const Vec3& core, Feature feature, const LocalSurface& surface) {
     const double height = n.dot(core - on_plane);
     found.add(core - height * n, 0, core, height, feature, surface);
   };
-  for (const FacetCorner& corner : a.facet(-n).corners) {
+  Facet& facet = memory().reference;
+  a.facet(-n, facet);
+  for (const FacetCorner& corner : facet.corners) {
     add(corner.point, corner.feature, corner.surface);
   }
   if (least < least_gap(contacts, first) - 1e-6 * a.size()) {

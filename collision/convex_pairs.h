@@ -24,7 +24,7 @@ concept ConvexPair = RoundOrHull<B> &&(RoundOrHull<A> || Simple<A>);
 template <class A, class B>
 requires ConvexPair<A, B>
 [[nodiscard]] double distance(const A& a, const Pose& pose_a, const B& b, const Pose& pose_b) {
-  return separate(core_of(a, pose_a), core_of(b, pose_b)).distance;
+  return collision::distance(core_of(a, pose_a), core_of(b, pose_b));
 }
 
 template <class A, class B>

@@ -83,12 +83,10 @@ void BoxCore::add_strata(const Vec3& n, double angle, std::vector<Stratum>& stra
   }
 }
 
-Facet BoxCore::facet(const Vec3& n) const {
+void BoxCore::facet(const Vec3& n, Facet& facet) const {
   const BoxFace face = face_against(box_, -n);
   const auto corners = face_corners(face);
-  Facet facet;
-  facet.face = box_feature(face.sides());
-  facet.normal = face.sign * box_.axes.col(face.axis);
+  facet.reset(box_feature(face.sides()), face.sign * box_.axes.col(face.axis));
   for (int k = 0; k < 4; ++k) {
     // face_corners() runs counter-clockwise about the axis itself.
     const int here = face.sign > 0 ? k : 3 - k;
@@ -100,7 +98,6 @@ Facet BoxCore::facet(const Vec3& n) const {
     facet.corners.push_back({box_.at(corners[here]), box_feature(corners[here]), box_feature(edge),
                              LocalSurface::vertex()});
   }
-  return facet;
 }
 
 HullCore::HullCore(const ConvexHull& hull, const Pose& pose)
@@ -158,7 +155,7 @@ void HullCore::add_strata(const Vec3& n, double angle, std::vector<Stratum>& str
   }
 }
 
-Facet HullCore::facet(const Vec3& n) const {
+void HullCore::facet(const Vec3& n, Facet& facet) const {
   // Of faces that face n equally to 1e-6 the first, so that rounding does not choose.
   constexpr double kTie = 1e-6;
   const Vec3 local = axes_.transpose() * n;
@@ -168,19 +165,16 @@ Facet HullCore::facet(const Vec3& n) const {
       face = f;
     }
   }
-  return facet_of(face);
+  facet_of(face, facet);
 }
 
-Facet HullCore::facet_of(int face) const {
-  Facet facet;
-  facet.face = face_feature(face);
-  facet.normal = axes_ * data_->normals[face];
+void HullCore::facet_of(int face, Facet& facet) const {
+  facet.reset(face_feature(face), axes_ * data_->normals[face]);
   for (std::size_t k = 0; k < data_->faces[face].size(); ++k) {
     const int v = data_->faces[face][k];
     facet.corners.push_back({vertex(v), static_cast<Feature>(v),
                              edge_feature(data_->edges_of_face[face][k]), LocalSurface::vertex()});
   }
-  return facet;
 }
 
 }  // namespace signorini::collision

@@ -46,11 +46,9 @@ FacetCorner corner(const Vec3& point, Feature feature, Feature edge, const Local
   return {point, feature, edge, surface};
 }
 
-Facet disc_facet(const Vec3& centre, const Mat3& axes, double side, double radius, Feature face,
-                 Feature rim) {
-  Facet facet;
-  facet.face = face;
-  facet.normal = side * axes.col(2);
+void disc_facet(const Vec3& centre, const Mat3& axes, double side, double radius, Feature face,
+                Feature rim, Facet& facet) {
+  facet.reset(face, side * axes.col(2));
   facet.disc_radius = radius;
   facet.disc_centre = centre;
   facet.rim = rim;
@@ -64,7 +62,6 @@ Facet disc_facet(const Vec3& centre, const Mat3& axes, double side, double radiu
                feature::kRimChords + upper + (side > 0.0 ? number : (number + 7) % 8),
                LocalSurface::vertex()));
   }
-  return facet;
 }
 
 }  // namespace
@@ -77,8 +74,9 @@ void PointCore::add_strata(const Vec3&, double, std::vector<Stratum>& strata) co
   strata.push_back(vertex_stratum(centre(), 0));
 }
 
-Facet PointCore::facet(const Vec3&) const {
-  return {{corner(centre(), 0, 0, LocalSurface::sphere(rounding()))}, 0};
+void PointCore::facet(const Vec3&, Facet& facet) const {
+  facet.reset(0, Vec3::Zero());
+  facet.corners.push_back(corner(centre(), 0, 0, LocalSurface::sphere(rounding())));
 }
 
 Vec3 SegmentCore::support(const Vec3& n) const {
@@ -104,11 +102,11 @@ void SegmentCore::add_strata(const Vec3& n, double angle, std::vector<Stratum>& 
   }
 }
 
-Facet SegmentCore::facet(const Vec3&) const {
+void SegmentCore::facet(const Vec3&, Facet& facet) const {
   const LocalSurface ball = LocalSurface::sphere(rounding());
-  return {{corner(centre() - half_ * axis_, feature::kLow, feature::kSide, ball),
-           corner(centre() + half_ * axis_, feature::kHigh, feature::kSide, ball)},
-          feature::kSide};
+  facet.reset(feature::kSide, Vec3::Zero());
+  facet.corners.push_back(corner(centre() - half_ * axis_, feature::kLow, feature::kSide, ball));
+  facet.corners.push_back(corner(centre() + half_ * axis_, feature::kHigh, feature::kSide, ball));
 }
 
 CylinderCore::CylinderCore(const Cylinder& cylinder, const Pose& pose)
@@ -148,23 +146,23 @@ void CylinderCore::add_strata(const Vec3& n, double angle, std::vector<Stratum>&
   }
 }
 
-Facet CylinderCore::facet(const Vec3& n) const {
+void CylinderCore::facet(const Vec3& n, Facet& facet) const {
   const Vec3 axis = axes_.col(2);
   const double along = n.dot(axis);
   if (std::abs(along) >= M_SQRT1_2) {
     const double side = along < 0.0 ? -1.0 : 1.0;
-    return disc_facet(centre() + side * half_ * axis, axes_, side, radius_,
-                      along < 0.0 ? feature::kLow : feature::kHigh,
-                      along < 0.0 ? feature::kLowRim : feature::kHighRim);
+    disc_facet(centre() + side * half_ * axis, axes_, side, radius_,
+               along < 0.0 ? feature::kLow : feature::kHigh,
+               along < 0.0 ? feature::kLowRim : feature::kHighRim, facet);
+    return;
   }
-  Facet facet;
+  facet.reset(0, Vec3::Zero());
   for (const double side : {-1.0, 1.0}) {
     const Stratum rim = rim_stratum(centre() + side * half_ * axis, axis, radius_,
                                     side < 0.0 ? feature::kLowRim : feature::kHighRim);
     const Vec3 point = rim.point(n);
     facet.corners.push_back(corner(point, rim.feature, feature::kSide, rim.surface(n, point, 0.0)));
   }
-  return facet;
 }
 
 ConeCore::ConeCore(const Cone& cone, const Pose& pose)
@@ -204,17 +202,21 @@ void ConeCore::add_strata(const Vec3& n, double angle, std::vector<Stratum>& str
   }
 }
 
-Facet ConeCore::facet(const Vec3& n) const {
+void ConeCore::facet(const Vec3& n, Facet& facet) const {
   const Vec3 axis = axes_.col(2);
   const Vec3 side = slope_ * axis + std::sqrt((1.0 - slope_) * (1.0 + slope_)) * outward(n, axis);
   if (-n.dot(axis) >= n.dot(side)) {
-    return disc_facet(base(), axes_, -1.0, radius_, feature::kLow, feature::kLowRim);
+    disc_facet(base(), axes_, -1.0, radius_, feature::kLow, feature::kLowRim, facet);
+    return;
   }
   const Stratum rim = rim_stratum(base(), axis, radius_, feature::kLowRim);
   const Vec3 point = base() + radius_ * outward(n, axis);
-  return {{corner(point, rim.feature, feature::kSide, rim.surface(side, point, 0.0)),
-           corner(apex(), feature::kHigh, feature::kSide, LocalSurface::vertex())},
-          feature::kSide};
+  // The rim as what lies across n meets it; from above the apex it is only far away.
+  const Vec3& met_by = n.cross(axis).norm() > 1e-6 ? n : side;
+  facet.reset(feature::kSide, Vec3::Zero());
+  facet.corners.push_back(
+      corner(point, rim.feature, feature::kSide, rim.surface(met_by, point, 0.0)));
+  facet.corners.push_back(corner(apex(), feature::kHigh, feature::kSide, LocalSurface::vertex()));
 }
 
 EllipsoidCore::EllipsoidCore(const Ellipsoid& ellipsoid, const Pose& pose)
@@ -239,9 +241,10 @@ void EllipsoidCore::add_strata(const Vec3&, double, std::vector<Stratum>& strata
   strata.push_back(stratum());
 }
 
-Facet EllipsoidCore::facet(const Vec3& n) const {
+void EllipsoidCore::facet(const Vec3& n, Facet& facet) const {
   const Vec3 point = support(n);
-  return {{corner(point, 0, 0, stratum().surface(n, point, 0.0))}, 0};
+  facet.reset(0, Vec3::Zero());
+  facet.corners.push_back(corner(point, 0, 0, stratum().surface(n, point, 0.0)));
 }
 
 }  // namespace signorini::collision

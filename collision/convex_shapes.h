@@ -28,7 +28,7 @@ class PointCore final : public Convex {
 
   [[nodiscard]] Vec3 support(const Vec3& n) const override;
   void add_strata(const Vec3& n, double angle, std::vector<Stratum>& strata) const override;
-  [[nodiscard]] Facet facet(const Vec3& n) const override;
+  void facet(const Vec3& n, Facet& facet) const override;
 };
 
 /// A segment: a capsule.
@@ -41,7 +41,7 @@ class SegmentCore final : public Convex {
 
   [[nodiscard]] Vec3 support(const Vec3& n) const override;
   void add_strata(const Vec3& n, double angle, std::vector<Stratum>& strata) const override;
-  [[nodiscard]] Facet facet(const Vec3& n) const override;
+  void facet(const Vec3& n, Facet& facet) const override;
 
  private:
   Vec3 axis_;
@@ -54,7 +54,7 @@ class CylinderCore final : public Convex {
 
   [[nodiscard]] Vec3 support(const Vec3& n) const override;
   void add_strata(const Vec3& n, double angle, std::vector<Stratum>& strata) const override;
-  [[nodiscard]] Facet facet(const Vec3& n) const override;
+  void facet(const Vec3& n, Facet& facet) const override;
 
  private:
   Mat3 axes_;
@@ -68,7 +68,7 @@ class ConeCore final : public Convex {
 
   [[nodiscard]] Vec3 support(const Vec3& n) const override;
   void add_strata(const Vec3& n, double angle, std::vector<Stratum>& strata) const override;
-  [[nodiscard]] Facet facet(const Vec3& n) const override;
+  void facet(const Vec3& n, Facet& facet) const override;
 
  private:
   [[nodiscard]] Vec3 apex() const { return centre() + half_ * axes_.col(2); }
@@ -86,7 +86,7 @@ class EllipsoidCore final : public Convex {
 
   [[nodiscard]] Vec3 support(const Vec3& n) const override;
   void add_strata(const Vec3& n, double angle, std::vector<Stratum>& strata) const override;
-  [[nodiscard]] Facet facet(const Vec3& n) const override;
+  void facet(const Vec3& n, Facet& facet) const override;
 
  private:
   [[nodiscard]] Stratum stratum() const;
@@ -101,7 +101,7 @@ class BoxCore final : public Convex {
 
   [[nodiscard]] Vec3 support(const Vec3& n) const override;
   void add_strata(const Vec3& n, double angle, std::vector<Stratum>& strata) const override;
-  [[nodiscard]] Facet facet(const Vec3& n) const override;
+  void facet(const Vec3& n, Facet& facet) const override;
 
  private:
   PlacedBox box_;
@@ -114,14 +114,14 @@ class HullCore final : public Convex {
 
   [[nodiscard]] Vec3 support(const Vec3& n) const override;
   void add_strata(const Vec3& n, double angle, std::vector<Stratum>& strata) const override;
-  [[nodiscard]] Facet facet(const Vec3& n) const override;
+  void facet(const Vec3& n, Facet& facet) const override;
 
  private:
   [[nodiscard]] Vec3 vertex(int v) const { return position_ + axes_ * data_->vertices[v]; }
   [[nodiscard]] int support_vertex(const Vec3& local_n) const;
   [[nodiscard]] Feature edge_feature(int e) const;
   [[nodiscard]] Feature face_feature(int f) const;
-  [[nodiscard]] Facet facet_of(int face) const;
+  void facet_of(int face, Facet& facet) const;
 
   const HullData* data_;
   Vec3 position_;

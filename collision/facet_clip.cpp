@@ -16,12 +16,19 @@ Vec3 onto_plane(const Vec3& x, const Vec3& direction, const Facet& plane) {
   return x + plane.normal.dot(at - x) / plane.normal.dot(direction) * direction;
 }
 
-/// > 0 outside the edge k of a polygon, seen along its normal.
-double excess(const Facet& polygon, std::size_t k, const Vec3& point) {
-  const Vec3& from = polygon.corners[k].point;
-  const Vec3& to = polygon.corners[(k + 1) % polygon.corners.size()].point;
-  return (to - from).cross(polygon.normal).normalized().dot(point - from);
-}
+/// The edge k of a polygon as a plane that stands on it.
+struct Side {
+  const Vec3& from;
+  Vec3 outward;
+
+  Side(const Facet& polygon, std::size_t k)
+      : from(polygon.corners[k].point),
+        outward((polygon.corners[k + 1 == polygon.corners.size() ? 0 : k + 1].point - from)
+                    .cross(polygon.normal)
+                    .normalized()) {}
+  /// > 0 outside, m.
+  [[nodiscard]] double excess(const Vec3& point) const { return outward.dot(point - from); }
+};
 
 /// Height over the reference and the foot of it, from a point of the incident shape.
 FacetPoint over(const Facet& reference, const Vec3& on_incident, const FacetCorner& incident,
@@ -58,10 +65,11 @@ int shared_corner(int p, int q, int n) {
   return (q + 1) % n == p ? p : -1;
 }
 
-ClipCorner crossing(const ClipCorner& from, double here, const ClipCorner& to, double there, int k,
-                    const Facet& incident, int reference_count) {
+/// Where the line from a corner crosses the edge k of the reference polygon.
+ClipCorner crossing(const ClipCorner& from, const Vec3& point, int k, const Facet& incident,
+                    int reference_count) {
   ClipCorner result;
-  result.point = from.point + here / (here - there) * (to.point - from.point);
+  result.point = point;
   result.what.surface = LocalSurface::vertex();
   result.on_reference = k;
   if (from.reference_edge < 0) {
@@ -73,40 +81,59 @@ ClipCorner crossing(const ClipCorner& from, double here, const ClipCorner& to, d
   return result;
 }
 
-std::vector<FacetPoint> clip_polygons(const Facet& incident, const Facet& reference, double slack) {
+struct Polygons {
   std::vector<ClipCorner> polygon;
+  std::vector<ClipCorner> clipped;
+};
+
+/// One step of Sutherland and Hodgman. A corner within `slack` of the edge stays what it is, and
+/// there is then no crossing beside it.
+void clip_at(const Facet& incident, const Facet& reference, int k, double slack,
+             Polygons& polygons) {
+  auto& [polygon, clipped] = polygons;
+  const Side side(reference, k);
+  const int sides = static_cast<int>(reference.corners.size());
+  clipped.clear();
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const ClipCorner& from = polygon[i];
+    const ClipCorner& to = polygon[i + 1 == polygon.size() ? 0 : i + 1];
+    const double here = side.excess(from.point);
+    const double there = side.excess(to.point);
+    const auto cross = [&] {
+      return crossing(from, from.point + here / (here - there) * (to.point - from.point), k,
+                      incident, sides);
+    };
+    if (here <= slack) {
+      clipped.push_back(from);
+      if (there > slack) {
+        if (here < 0.0) {
+          clipped.push_back(cross());
+        }
+        clipped.back().reference_edge = k;
+      }
+    } else if (there < 0.0) {
+      clipped.push_back(cross());
+      clipped.back().edge = from.edge;
+      clipped.back().reference_edge = from.reference_edge;
+    }
+  }
+  std::swap(polygon, clipped);
+}
+
+void clip_polygons(const Facet& incident, const Facet& reference, double slack,
+                   std::vector<FacetPoint>& points) {
+  thread_local Polygons polygons;
+  std::vector<ClipCorner>& polygon = polygons.polygon;
+  polygon.clear();
   for (const FacetCorner& corner : incident.corners) {
     ClipCorner& added = polygon.emplace_back();
     added.point = corner.point;
     added.what = corner;
     added.edge = corner.edge;
   }
-  const int sides = static_cast<int>(reference.corners.size());
-  std::vector<ClipCorner> clipped;
-  for (int k = 0; k < sides; ++k) {
-    clipped.clear();
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-      const ClipCorner& from = polygon[i];
-      const ClipCorner& to = polygon[(i + 1) % polygon.size()];
-      const double here = excess(reference, k, from.point) - slack;
-      const double there = excess(reference, k, to.point) - slack;
-      if (here <= 0.0) {
-        clipped.push_back(from);
-        if (here == 0.0 && there > 0.0) {
-          clipped.back().reference_edge = k;
-        } else if (there > 0.0) {
-          clipped.push_back(crossing(from, here, to, there, k, incident, sides));
-          clipped.back().reference_edge = k;
-        }
-      } else if (there < 0.0) {
-        clipped.push_back(crossing(from, here, to, there, k, incident, sides));
-        clipped.back().edge = from.edge;
-        clipped.back().reference_edge = from.reference_edge;
-      }
-    }
-    std::swap(polygon, clipped);
+  for (int k = 0; k < static_cast<int>(reference.corners.size()); ++k) {
+    clip_at(incident, reference, k, slack, polygons);
   }
-  std::vector<FacetPoint> points;
   for (const ClipCorner& corner : polygon) {
     Feature feature = reference.face;
     if (corner.corner_of_reference >= 0) {
@@ -116,7 +143,6 @@ std::vector<FacetPoint> clip_polygons(const Facet& incident, const Facet& refere
     }
     points.push_back(over(reference, corner.point, corner.what, feature));
   }
-  return points;
 }
 
 // A segment over a polygon or disc.
@@ -132,8 +158,9 @@ struct Inside {
 Inside over_polygon(const Vec3& p, const Vec3& q, const Facet& polygon, double slack) {
   Inside inside{0.0, 1.0, polygon.face, polygon.face};
   for (std::size_t k = 0; k < polygon.corners.size(); ++k) {
-    const double here = excess(polygon, k, p) - slack;
-    const double there = excess(polygon, k, q) - slack;
+    const Side side(polygon, k);
+    const double here = side.excess(p) - slack;
+    const double there = side.excess(q) - slack;
     if (here > 0.0 && there > 0.0) {
       inside.from = 2.0;
     } else if (here > 0.0 && here / (here - there) > inside.from) {
@@ -179,14 +206,14 @@ Inside over_disc(const Vec3& p, const Vec3& q, const Facet& disc, double slack) 
   return inside;
 }
 
-std::vector<FacetPoint> clip_segment(const Facet& segment, const Facet& reference, double slack) {
+void clip_segment(const Facet& segment, const Facet& reference, double slack,
+                  std::vector<FacetPoint>& points) {
   const FacetCorner& p = segment.corners[0];
   const FacetCorner& q = segment.corners[1];
   const Inside inside = reference.is_disc() ? over_disc(p.point, q.point, reference, slack)
                                             : over_polygon(p.point, q.point, reference, slack);
-  std::vector<FacetPoint> points;
   if (inside.from > inside.to) {
-    return points;
+    return;
   }
   const auto add = [&](double t, const FacetCorner& end, bool is_end, Feature feature) {
     FacetCorner corner = end;
@@ -204,7 +231,6 @@ std::vector<FacetPoint> clip_segment(const Facet& segment, const Facet& referenc
   if (inside.to > inside.from) {
     add(inside.to, q, inside.to == 1.0, inside.at_to);
   }
-  return points;
 }
 
 // A disc and a polygon (or the corners of another disc), one over the other.
@@ -215,10 +241,13 @@ struct DiscPoint {
   FacetCorner of_polygon;
 };
 
-std::vector<DiscPoint> disc_over_polygon(const Facet& disc, const Facet& polygon,
-                                         const Vec3& direction, double slack) {
+/// Calls add(DiscPoint).
+template <class Add>
+void disc_over_polygon(const Facet& disc, const Facet& polygon, const Vec3& direction, double slack,
+                       Add&& add) {
   // The polygon as it is seen in the disc's plane.
-  Facet seen = polygon;
+  thread_local Facet seen;
+  seen = polygon;
   seen.disc_radius = 0.0;
   seen.normal = polygon.normal.dot(disc.normal) < 0.0 ? Vec3(-disc.normal) : disc.normal;
   for (FacetCorner& corner : seen.corners) {
@@ -226,7 +255,6 @@ std::vector<DiscPoint> disc_over_polygon(const Facet& disc, const Facet& polygon
   }
   const FacetCorner disc_face{Vec3::Zero(), disc.face, 0, LocalSurface::vertex()};
   const FacetCorner polygon_face{Vec3::Zero(), polygon.face, 0, LocalSurface::vertex()};
-  std::vector<DiscPoint> points;
   for (std::size_t k = 0; k < seen.corners.size(); ++k) {
     const FacetCorner& p = seen.corners[k];
     const FacetCorner& q = seen.corners[(k + 1) % seen.corners.size()];
@@ -240,40 +268,38 @@ std::vector<DiscPoint> disc_over_polygon(const Facet& disc, const Facet& polygon
     };
     const FacetCorner edge{Vec3::Zero(), p.edge, 0, LocalSurface::vertex()};
     if (inside.from == 0.0) {
-      points.push_back({p.point, disc_face, p});
+      add(DiscPoint{p.point, disc_face, p});
     } else if (inside.from < 1.0) {
-      points.push_back({at(inside.from), rim(inside.at_from), edge});
+      add(DiscPoint{at(inside.from), rim(inside.at_from), edge});
     }
     if (inside.to > inside.from && inside.to < 1.0) {
-      points.push_back({at(inside.to), rim(inside.at_to), edge});
+      add(DiscPoint{at(inside.to), rim(inside.at_to), edge});
     }
   }
   for (const FacetCorner& corner : disc.corners) {
     if (is_over(seen, corner.point, -slack)) {
-      points.push_back({corner.point, corner, polygon_face});
+      add(DiscPoint{corner.point, corner, polygon_face});
     }
   }
-  return points;
 }
 
-std::vector<FacetPoint> clip_with_disc(const Facet& incident, const Facet& reference,
-                                       double slack) {
-  std::vector<FacetPoint> points;
+void clip_with_disc(const Facet& incident, const Facet& reference, double slack,
+                    std::vector<FacetPoint>& points) {
   const bool disc_is_reference = reference.is_disc();
   const Facet& disc = disc_is_reference ? reference : incident;
   const Facet& other = disc_is_reference ? incident : reference;
-  for (const DiscPoint& point : disc_over_polygon(disc, other, reference.normal, slack)) {
+  disc_over_polygon(disc, other, reference.normal, slack, [&](const DiscPoint& point) {
     const Vec3 on_incident =
         disc_is_reference ? onto_plane(point.on_disc, reference.normal, incident) : point.on_disc;
     const FacetCorner& what = disc_is_reference ? point.of_polygon : point.of_disc;
     const FacetCorner& where = disc_is_reference ? point.of_disc : point.of_polygon;
     points.push_back(over(reference, on_incident, what, where.feature));
-  }
-  return points;
+  });
 }
 
 /// Two discs whose rims cross between their corners: the two crossings.
-std::vector<FacetPoint> crossed_rims(const Facet& incident, const Facet& reference) {
+void add_crossed_rims(const Facet& incident, const Facet& reference,
+                      std::vector<FacetPoint>& points) {
   const Vec3 centre = onto_plane(incident.disc_centre, reference.normal, reference);
   const Vec3 between = centre - reference.disc_centre;
   const double apart = between.norm();
@@ -281,9 +307,8 @@ std::vector<FacetPoint> crossed_rims(const Facet& incident, const Facet& referen
   const double along =
       0.5 * (apart + (R - incident.disc_radius) * (R + incident.disc_radius) / apart);
   const double squared = (R - along) * (R + along);
-  std::vector<FacetPoint> points;
   if (!(squared >= 0.0)) {
-    return points;
+    return;
   }
   const Vec3 middle = reference.disc_centre + along / apart * between;
   const Vec3 half = std::sqrt(squared) / apart * reference.normal.cross(between);
@@ -294,7 +319,6 @@ std::vector<FacetPoint> crossed_rims(const Facet& incident, const Facet& referen
     points.push_back(
         over(reference, onto_plane(foot, reference.normal, incident), rim, reference.rim + shift));
   }
-  return points;
 }
 
 }  // namespace
@@ -306,32 +330,31 @@ bool is_over(const Facet& reference, const Vec3& point, double slack) {
            reference.disc_radius + slack;
   }
   for (std::size_t k = 0; k < reference.corners.size(); ++k) {
-    if (excess(reference, k, point) > slack) {
+    if (Side(reference, k).excess(point) > slack) {
       return false;
     }
   }
   return true;
 }
 
-std::vector<FacetPoint> clip_facet(const Facet& incident, const Facet& reference, double slack) {
+void clip_facet(const Facet& incident, const Facet& reference, double slack,
+                std::vector<FacetPoint>& points) {
+  points.clear();
   if (incident.corners.size() == 1) {
     const FacetCorner& corner = incident.corners.front();
-    if (!is_over(reference, corner.point, slack)) {
-      return {};
+    if (is_over(reference, corner.point, slack)) {
+      points.push_back(over(reference, corner.point, corner, reference.face));
     }
-    return {over(reference, corner.point, corner, reference.face)};
-  }
-  if (incident.corners.size() == 2) {
-    return clip_segment(incident, reference, slack);
-  }
-  if (incident.is_disc() || reference.is_disc()) {
-    std::vector<FacetPoint> points = clip_with_disc(incident, reference, slack);
+  } else if (incident.corners.size() == 2) {
+    clip_segment(incident, reference, slack, points);
+  } else if (incident.is_disc() || reference.is_disc()) {
+    clip_with_disc(incident, reference, slack, points);
     if (points.empty() && incident.is_disc() && reference.is_disc()) {
-      points = crossed_rims(incident, reference);
+      add_crossed_rims(incident, reference, points);
     }
-    return points;
+  } else {
+    clip_polygons(incident, reference, slack, points);
   }
-  return clip_polygons(incident, reference, slack);
 }
 
 }  // namespace signorini::collision

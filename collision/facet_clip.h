@@ -23,11 +23,13 @@ struct FacetPoint {
 /// corners of the incident facet over the reference facet, the crossings of their boundaries, and
 /// the reference facet's corners over the incident one. A disc's corners are 8 points of its rim;
 /// its boundary is the whole circle, so that a polygon's crossings with it are exact. Polygon and
-/// polygon: Sutherland and Hodgman 1974.
+/// polygon: Sutherland and Hodgman 1974. Allocates nothing once no facet has more corners than an
+/// earlier one of this thread.
 /// @param reference a polygon or disc
 /// @param slack m, >= 0: corners that lie this far beside count as over, so that rounding does not
-/// move the corners of faces that are flush
-[[nodiscard]] std::vector<FacetPoint> clip_facet(const Facet& incident, const Facet& reference,
-                                                 double slack);
+/// move the corners of faces that are flush; crossings lie on the boundaries themselves
+/// @param points replaced
+void clip_facet(const Facet& incident, const Facet& reference, double slack,
+                std::vector<FacetPoint>& points);
 
 }  // namespace signorini::collision

@@ -2,6 +2,7 @@
 #include <signorini/collision/hull_builder.h>
 #include <signorini/core/model/number_text.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <stdexcept>
@@ -50,6 +51,7 @@ class Qhull {
         loop.push_back(qh_pointid(qh, vertex->point));
       }
       qh_settempfree(qh, const_cast<setT**>(&around));
+      std::reverse(loop.begin(), loop.end());  // Qhull's run clockwise (qh_ORIENTclock)
     }
     return result;
   }

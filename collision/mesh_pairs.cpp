@@ -70,18 +70,15 @@ class TriangleCore final : public Convex {
     }
   }
 
-  [[nodiscard]] Facet facet(const Vec3& n) const override {
+  void facet(const Vec3& n, Facet& facet) const override {
     const bool is_front = normal_.dot(n) >= 0.0;
-    Facet facet;
-    facet.face = is_front ? kFront : kBack;
-    facet.normal = is_front ? normal_ : Vec3(-normal_);
+    facet.reset(is_front ? kFront : kBack, is_front ? normal_ : Vec3(-normal_));
     for (int i = 0; i < 3; ++i) {
       const int k = is_front ? i : 2 - i;
       const int edge = is_front ? k : (k + 2) % 3;
       facet.corners.push_back({corners_[k], static_cast<Feature>(k),
                                kEdges + static_cast<Feature>(edge), LocalSurface::vertex()});
     }
-    return facet;
   }
 
  private:
@@ -170,7 +167,8 @@ TriangleMeeting meet(const Convex& a, const PlacedMesh& mesh, int t, const Trian
     meeting.distance = meeting.face.separation;
     return meeting;
   }
-  const Separation found = separate(a, triangle);
+  thread_local Separation found;
+  separate(a, triangle, found);
   meeting.distance = found.distance;
   meeting.counts = std::any_of(found.meetings.begin(), found.meetings.end(),
                                [&](const Meeting& m) { return belongs(mesh, t, m.b, m.normal); });

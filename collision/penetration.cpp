@@ -19,14 +19,35 @@ struct Face {
   bool is_seen = false;        ///< from the point that is being added
 };
 
+/// What a polytope is made of: kept from query to query.
+struct PolytopeMemory {
+  std::vector<Vec3> points;
+  std::vector<Face> faces;
+  std::vector<Face*> open;
+  std::vector<std::array<int, 2>> horizon;
+};
+
 class Polytope {
  public:
-  Polytope(const Convex& a, const Convex& b, double tolerance)
-      : a_(a), b_(b), tolerance_(tolerance) {}
+  Polytope(const Convex& a, const Convex& b, double tolerance, PolytopeMemory& memory,
+           std::vector<Axis>& found)
+      : a_(a),
+        b_(b),
+        tolerance_(tolerance),
+        found_(found),
+        points_(memory.points),
+        faces_(memory.faces),
+        open_(memory.open),
+        horizon_(memory.horizon) {
+    found_.clear();
+    points_.clear();
+    faces_.clear();
+  }
 
-  std::vector<Axis> expand() {
+  /// Leaves the directions in `found`.
+  void expand() {
     if (!start()) {
-      return found_;
+      return;
     }
     while (static_cast<int>(points_.size()) < kMostPoints) {
       Face* const nearest = nearest_face();
@@ -41,9 +62,13 @@ class Polytope {
         add(*nearest, point);
       }
     }
-    std::stable_sort(found_.begin(), found_.end(),
-                     [](const Axis& p, const Axis& q) { return p.separation > q.separation; });
-    return found_;
+    // By insertion, which is stable and needs no memory.
+    for (auto axis = found_.begin(); axis != found_.end(); ++axis) {
+      const auto place = std::upper_bound(
+          found_.begin(), axis, *axis,
+          [](const Axis& p, const Axis& q) { return p.separation > q.separation; });
+      std::rotate(place, axis, axis + 1);
+    }
   }
 
  private:
@@ -67,14 +92,14 @@ class Polytope {
     constexpr double kLeastShape = 1e-10;
     const Vec3 first = support(Vec3::UnitX());
     const Vec3 second = support(-Vec3::UnitX());
-    points_ = {first, second};
+    points_.assign({first, second});
     Vec3 span = second - first;
     for (const Vec3& axis : {Vec3(Vec3::UnitY()), Vec3(Vec3::UnitZ())}) {
       const Vec3 low = support(-axis);
       const Vec3 high = support(axis);
       if ((high - low).norm() > span.norm()) {
         span = high - low;
-        points_ = {low, high};
+        points_.assign({low, high});
       }
     }
     const double size = span.norm();
@@ -139,11 +164,11 @@ class Polytope {
   /// faces that are nearly coplanar with the point cannot tear the surface.
   void add(Face& first, const Vec3& point) {
     first.is_seen = true;
-    std::vector<Face*> open{&first};
-    std::vector<std::array<int, 2>> horizon;
-    while (!open.empty()) {
-      const Face& face = *open.back();
-      open.pop_back();
+    open_.assign({&first});
+    horizon_.clear();
+    while (!open_.empty()) {
+      const Face& face = *open_.back();
+      open_.pop_back();
       for (int k = 0; k < 3; ++k) {
         const int from = face.corners[k];
         const int to = face.corners[(k + 1) % 3];
@@ -153,20 +178,20 @@ class Polytope {
         }
         if (next.normal.dot(point) > next.offset) {
           next.is_seen = true;
-          open.push_back(&next);
+          open_.push_back(&next);
         } else {
-          horizon.push_back({from, to});
+          horizon_.push_back({from, to});
         }
       }
     }
     // A face that was seen after one of its edges had been listed takes the edge with it.
-    std::erase_if(horizon, [&](const std::array<int, 2>& edge) {
+    std::erase_if(horizon_, [&](const std::array<int, 2>& edge) {
       return face_along(edge[1], edge[0]).is_seen;
     });
     std::erase_if(faces_, [](const Face& face) { return face.is_seen; });
     const int number = static_cast<int>(points_.size());
     points_.push_back(point);
-    for (const auto& [from, to] : horizon) {
+    for (const auto& [from, to] : horizon_) {
       add_face(from, to, number);
     }
   }
@@ -183,15 +208,18 @@ class Polytope {
   const Convex& b_;
   double tolerance_;
   double least_ = kInfinity;  ///< of the reaches seen
-  std::vector<Axis> found_;
-  std::vector<Vec3> points_;
-  std::vector<Face> faces_;
+  std::vector<Axis>& found_;
+  std::vector<Vec3>& points_;
+  std::vector<Face>& faces_;
+  std::vector<Face*>& open_;
+  std::vector<std::array<int, 2>>& horizon_;
 };
 
 }  // namespace
 
-std::vector<Axis> penetration(const Convex& a, const Convex& b, double tolerance) {
-  return Polytope(a, b, tolerance).expand();
+void penetration(const Convex& a, const Convex& b, double tolerance, std::vector<Axis>& axes) {
+  thread_local PolytopeMemory memory;
+  Polytope(a, b, tolerance, memory, axes).expand();
 }
 
 }  // namespace signorini::collision

@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -12,7 +13,13 @@ namespace signorini::collision {
 namespace {
 
 using Kind = Stratum::Kind;
-using Normals = std::vector<Vec3>;
+/// Directions to try for a pair of pieces: three at most.
+struct Normals {
+  std::array<Vec3, 3> directions{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  int count = 0;
+
+  void add(const Vec3& n) { directions[count++] = n; }
+};
 
 /// Relative to the smaller size: nearer than this GJK's normal is not used alone.
 constexpr double kTouch = 1e-4;
@@ -95,16 +102,16 @@ Normals of_lines(const Stratum& a, const Stratum& b, const Vec3& near) {
     if (rest >= 0.0) {
       const Vec3 out = std::sqrt(rest / squared) * cross;
       const double side = out.dot(near) < 0.0 ? -1.0 : 1.0;
-      result.push_back((base + side * out).normalized());
+      result.add((base + side * out).normalized());
     }
   }
   if (squared < 1e-6) {
     // Nearly parallel: as if exactly so.
     if (const auto n = on_circle(a, b, p, near)) {
-      result.push_back(*n);
+      result.add(*n);
     }
     if (const auto n = on_circle(a, b, q, near)) {
-      result.push_back(*n);
+      result.add(*n);
     }
   }
   return result;
@@ -141,11 +148,10 @@ std::optional<Vec3> on_sphere(const Stratum& a, const Stratum& b, Vec3 n) {
 
 /// The normals at which s may be largest, for one piece of each shape.
 Normals normals_of(const Stratum& a, const Stratum& b, const Vec3& near) {
-  if (a.kind == Kind::kFace) {
-    return {-a.axis};
-  }
-  if (b.kind == Kind::kFace) {
-    return {b.axis};
+  Normals result;
+  if (a.kind == Kind::kFace || b.kind == Kind::kFace) {
+    result.add(a.kind == Kind::kFace ? Vec3(-a.axis) : b.axis);
+    return result;
   }
   if (a.kind == Kind::kLine && b.kind == Kind::kLine) {
     return of_lines(a, b, near);
@@ -153,7 +159,10 @@ Normals normals_of(const Stratum& a, const Stratum& b, const Vec3& near) {
   const std::optional<Vec3> n = a.kind == Kind::kLine   ? on_circle(a, b, Circle(a, true), near)
                                 : b.kind == Kind::kLine ? on_circle(a, b, Circle(b, false), near)
                                                         : on_sphere(a, b, near);
-  return n ? Normals{*n} : Normals{};
+  if (n) {
+    result.add(*n);
+  }
+  return result;
 }
 
 /// How sharply a pair of pieces determines its normal.
@@ -189,9 +198,34 @@ bool prefers(const FacingFace& p, double area_p, const FacingFace& q, double are
   return ((p.normal + q.normal).dot(odd_direction) < 0.0) == p.of_a;
 }
 
+struct Candidate {
+  double distance;
+  Vec3 normal;
+  int rank;
+  Stratum a;
+  Stratum b;
+};
+
+/// What a search works on: kept from query to query.
+struct SearchMemory {
+  std::vector<Candidate> candidates;
+  std::vector<const Candidate*> tied;
+  std::vector<Stratum> pieces_a;
+  std::vector<Stratum> pieces_b;
+  std::vector<Axis> axes;
+};
+
 class Search {
  public:
-  Search(const Convex& a, const Convex& b) : a_(a), b_(b) {}
+  Search(const Convex& a, const Convex& b, SearchMemory& memory)
+      : a_(a),
+        b_(b),
+        candidates_(memory.candidates),
+        tied_(memory.tied),
+        pieces_a_(memory.pieces_a),
+        pieces_b_(memory.pieces_b) {
+    candidates_.clear();
+  }
 
   void refine(const Vec3& near) {
     try_pieces(near, kAngles[0]);
@@ -201,35 +235,32 @@ class Search {
   /// Has a pair of pieces come at least as far as the directions it started from?
   [[nodiscard]] bool is_refined() const { return candidates_[highest_].rank >= 0; }
 
-  [[nodiscard]] Separation best() const {
+  void write_best(Separation& result) {
     const double largest = candidates_[highest_].distance;
     const double tie = kTie * std::min(a_.size(), b_.size()) +
                        16.0 * std::numeric_limits<double>::epsilon() * (a_.size() + b_.size());
-    std::vector<const Candidate*> tied;
+    tied_.clear();
     for (const Candidate& candidate : candidates_) {
       if (candidate.distance >= largest - tie) {
-        tied.push_back(&candidate);
+        // By insertion, which is stable and needs no memory.
+        const auto place = std::upper_bound(
+            tied_.begin(), tied_.end(), &candidate, [](const Candidate* p, const Candidate* q) {
+              return p->rank != q->rank ? p->rank > q->rank : p->distance > q->distance;
+            });
+        tied_.insert(place, &candidate);
       }
     }
-    std::stable_sort(tied.begin(), tied.end(), [](const Candidate* p, const Candidate* q) {
-      return p->rank != q->rank ? p->rank > q->rank : p->distance > q->distance;
-    });
-    Separation result{largest, {}, face()};
-    for (const Candidate* candidate : tied) {
+    result.distance = largest;
+    result.face = face();
+    result.meetings.clear();
+    for (const Candidate* candidate : tied_) {
       result.meetings.push_back({candidate->normal, candidate->a, candidate->b});
     }
-    return result;
   }
 
- private:
-  struct Candidate {
-    double distance;
-    Vec3 normal;
-    int rank;
-    Stratum a;
-    Stratum b;
-  };
+  [[nodiscard]] double distance() const { return candidates_[highest_].distance; }
 
+ private:
   void offer(const Vec3& n, int rank, const Stratum& piece_a, const Stratum& piece_b) {
     const double s = separation_along(a_, b_, n);
     const bool is_highest = candidates_.empty() || s > candidates_[highest_].distance;
@@ -243,18 +274,19 @@ class Search {
   }
 
   void try_pieces(const Vec3& near, double angle) {
-    std::vector<Stratum> pieces_a;
-    std::vector<Stratum> pieces_b;
-    a_.add_strata(-near, angle, pieces_a);
-    b_.add_strata(near, angle, pieces_b);
-    for (const Stratum& piece_a : pieces_a) {
-      for (const Stratum& piece_b : pieces_b) {
-        for (const Vec3& n : normals_of(piece_a, piece_b, near)) {
-          offer(n, rank_of(piece_a, piece_b), piece_a, piece_b);
+    pieces_a_.clear();
+    pieces_b_.clear();
+    a_.add_strata(-near, angle, pieces_a_);
+    b_.add_strata(near, angle, pieces_b_);
+    for (const Stratum& piece_a : pieces_a_) {
+      for (const Stratum& piece_b : pieces_b_) {
+        const Normals normals = normals_of(piece_a, piece_b, near);
+        for (int k = 0; k < normals.count; ++k) {
+          offer(normals.directions[k], rank_of(piece_a, piece_b), piece_a, piece_b);
         }
       }
     }
-    offer(near, -1, *furthest_free(pieces_a, -near), *furthest_free(pieces_b, near));
+    offer(near, -1, *furthest_free(pieces_a_, -near), *furthest_free(pieces_b_, near));
   }
 
   [[nodiscard]] bool is_as_good(double separation) const {
@@ -289,9 +321,43 @@ class Search {
 
   const Convex& a_;
   const Convex& b_;
-  std::vector<Candidate> candidates_;
+  std::vector<Candidate>& candidates_;
+  std::vector<const Candidate*>& tied_;
+  std::vector<Stratum>& pieces_a_;
+  std::vector<Stratum>& pieces_b_;
   std::size_t highest_ = 0;
 };
+
+SearchMemory& memory() {
+  thread_local SearchMemory of_this_thread;
+  return of_this_thread;
+}
+
+/// Everything that separate() tries.
+void run(Search& search, const Convex& a, const Convex& b, std::vector<Axis>& axes) {
+  const double size = std::min(a.size(), b.size());
+  const GjkResult near = gjk(a, b, kGjkNear, 0.0);
+  if (near.lower > -kTouch * size && !near.normal.isZero(0.0)) {
+    search.refine(near.normal);
+    if (near.lower > 0.0 && !search.is_refined()) {
+      search.refine(gjk(a, b, 0.0, 0.0).normal);  // Newton needs to start nearer
+    }
+  }
+  if (near.lower <= kTouch * size) {
+    penetration(a, b, kNear * size, axes);
+    std::array<Vec3, kMostBasins> tried;
+    std::size_t count = 0;
+    for (const Axis& axis : axes) {
+      const bool is_new = std::all_of(tried.begin(), tried.begin() + count, [&](const Vec3& n) {
+        return n.dot(axis.normal) < kSameBasin;
+      });
+      if (is_new && count < kMostBasins) {
+        tried[count++] = axis.normal;
+        search.refine(axis.normal);
+      }
+    }
+  }
+}
 
 }  // namespace
 
@@ -303,29 +369,16 @@ double separation_along(const Convex& a, const Convex& b, const Vec3& n) {
   return n.dot(a.support(-n) - b.support(n)) - (a.rounding() + b.rounding());
 }
 
-Separation separate(const Convex& a, const Convex& b) {
-  const double size = std::min(a.size(), b.size());
-  const GjkResult near = gjk(a, b, kGjkNear, 0.0);
-  Search search(a, b);
-  if (near.lower > -kTouch * size && !near.normal.isZero(0.0)) {
-    search.refine(near.normal);
-    if (near.lower > 0.0 && !search.is_refined()) {
-      search.refine(gjk(a, b, 0.0, 0.0).normal);  // Newton needs to start nearer
-    }
-  }
-  if (near.lower <= kTouch * size) {
-    std::vector<Vec3> tried;
-    for (const Axis& axis : penetration(a, b, kNear * size)) {
-      const bool is_new = std::all_of(tried.begin(), tried.end(), [&](const Vec3& n) {
-        return n.dot(axis.normal) < kSameBasin;
-      });
-      if (is_new && tried.size() < kMostBasins) {
-        tried.push_back(axis.normal);
-        search.refine(axis.normal);
-      }
-    }
-  }
-  return search.best();
+void separate(const Convex& a, const Convex& b, Separation& separation) {
+  Search search(a, b, memory());
+  run(search, a, b, memory().axes);
+  search.write_best(separation);
+}
+
+double distance(const Convex& a, const Convex& b) {
+  Search search(a, b, memory());
+  run(search, a, b, memory().axes);
+  return search.distance();
 }
 
 bool overlap(const Convex& a, const Convex& b) {
@@ -334,7 +387,7 @@ bool overlap(const Convex& a, const Convex& b) {
   if (near.lower > a.rounding() + b.rounding() + touch) {
     return false;
   }
-  return separate(a, b).distance <= 0.0;
+  return distance(a, b) <= 0.0;
 }
 
 }  // namespace signorini::collision

@@ -50,10 +50,16 @@ struct Separation {
 /// largest s wins. Every s(n) is a lower bound of d whatever n was found, so that none of it can
 /// make the distance too large; d is within some tens of roundings of the sizes, except that of
 /// translations whose lengths differ by less than 1e-8 of the smaller size either may be returned.
+/// Allocates nothing once no shape has more pieces near a direction than an earlier one of this
+/// thread.
+/// @param separation replaced
 /// @pre not both cores are points or segments
-[[nodiscard]] Separation separate(const Convex& a, const Convex& b);
+void separate(const Convex& a, const Convex& b, Separation& separation);
 
-/// separate(a, b).distance <= 0, with an early end where GJK decides.
+/// The signed distance alone.
+[[nodiscard]] double distance(const Convex& a, const Convex& b);
+
+/// distance(a, b) <= 0, with an early end where GJK decides.
 [[nodiscard]] bool overlap(const Convex& a, const Convex& b);
 
 /// s(n): how far apart the rounded shapes are along n.

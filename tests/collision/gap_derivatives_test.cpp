@@ -67,16 +67,19 @@ std::optional<double> gap_at(const Shape& a, const MovingBody& body_a, const Sha
 }
 
 /// A clipped point is a point of the incident body's material: its gap is its height over the
-/// moving reference face, wherever the clipping would find the crossing next.
+/// moving reference face, wherever the clipping would find the crossing next. A point of a
+/// capsule's side: of its axis, with a ball of this radius about it.
 double material_gap_at(const Contact& contact, const MovingBody& body_a, const MovingBody& body_b,
-                       double t) {
+                       double t, double radius = 0.0) {
   const auto carried = [&](const MovingBody& body, const Vec3& point) {
     return body.at(t) * (body.start.inverse() * point);
   };
   const bool face_of_a = contact.owner == NormalOwner::kFaceA;
   const MovingBody& owner = face_of_a ? body_a : body_b;
   const Vec3 N = owner.at(t).orientation * (owner.start.orientation.conjugate() * contact.normal);
-  return N.dot(carried(body_a, contact.point_a) - carried(body_b, contact.point_b));
+  const Vec3 core_a = contact.point_a + (face_of_a ? 0.0 : radius) * contact.normal;
+  const Vec3 core_b = contact.point_b - (face_of_a ? radius : 0.0) * contact.normal;
+  return N.dot(carried(body_a, core_a) - carried(body_b, core_b)) - radius;
 }
 
 struct Difference {
@@ -107,7 +110,9 @@ std::string kind_of(const Contact& contact, bool is_vertex) {
       return "vertex";
     }
     if (std::isinf(surface.radius_along)) {
-      return surface.radius_across == 0.0 ? "edge" : "face";
+      return surface.radius_across == 0.0        ? "edge"
+             : std::isinf(surface.radius_across) ? "face"
+                                                 : "generator";
     }
     return "round";
   };
@@ -222,6 +227,104 @@ TEST(GapDerivatives, OfEveryContactMatchFiniteDifferences) {
         "curved, round/edge", "curved, round/vertex", "curved, edge/round", "curved, vertex/round",
         "curved, vertex/vertex", "curved, vertex/edge", "curved, edge/vertex",
         "face of A, face/vertex, clipped", "face of B, vertex/face, clipped"}) {
+    EXPECT_GT(compared[kind], 0) << kind;
+  }
+}
+
+/// The least radius of curvature that the gap of a contact bends with.
+double bending_scale(const Contact& contact) {
+  double least = 1.0;
+  if (contact.owner == NormalOwner::kEdgeEdge) {
+    return contact.surface_a.direction.cross(contact.surface_b.direction).norm();
+  }
+  const auto& [a, b] = std::pair(contact.surface_a, contact.surface_b);
+  const auto finite = [](double r) { return std::isfinite(r) ? r : 0.0; };
+  const double along = std::min(finite(a.radius_along), finite(a.radius_across)) +
+                       std::min(finite(b.radius_along), finite(b.radius_across));
+  if (contact.owner == NormalOwner::kCurved) {
+    least = std::min(least, std::abs(contact.gap + along));
+  }
+  return least;
+}
+
+// Cylinder, cone, ellipsoid and capsule against plane, ball, box and each other: rims, generators,
+// apexes and ellipsoids carry their curvature.
+TEST(GapDerivatives, OfRoundShapesMatchFiniteDifferences) {
+  Random random(20261125);
+  const Shape round[] = {Cylinder{0.5, 0.7}, Cone{0.6, 0.5}, Ellipsoid{{0.5, 0.7, 0.9}},
+                         Capsule{0.4, 0.6}};
+  const Shape others[] = {
+      HalfSpace{},        Sphere{0.6},    Box{{0.9, 0.4, 0.7}},      Capsule{0.3, 0.8},
+      Cylinder{0.6, 0.5}, Cone{0.7, 0.6}, Ellipsoid{{0.8, 0.6, 0.5}}};
+  std::map<std::string, int> compared;
+  std::map<std::string, double> worst;
+  int left_out = 0;
+  for (int k = 0; k < 6000; ++k) {
+    const Shape& a = round[k % 4];
+    const Shape& b = others[k / 4 % 7];
+    testing::PlacedPair pair{
+        a,
+        {2.5 * testing::random_direction(random), testing::random_orientation(random)},
+        b,
+        {Vec3::Zero(), testing::random_orientation(random)}};
+    std::vector<Contact> contacts;
+    find_intersection(a, pair.pose_a, b, pair.pose_b, 1e9, contacts);
+    const auto& least = *std::min_element(contacts.begin(), contacts.end(),
+                                          [](auto& p, auto& q) { return p.gap < q.gap; });
+    constexpr double kGaps[] = {-0.02, 0.0, 0.05, 0.3};
+    pair.pose_a.position += (kGaps[k / 28 % 4] - least.gap) * least.normal;
+    find_intersection(a, pair.pose_a, b, pair.pose_b, 0.31, contacts);
+    const MovingBody body_a = random_body(random, pair.pose_a, 1.0);
+    const MovingBody body_b = random_body(random, pair.pose_b, 1.0);
+    for (const Contact& contact : contacts) {
+      const GapKinematics kinematics = gap_kinematics(
+          contact, {body_a.start.position, body_a.start.orientation}, body_a.velocity,
+          {body_b.start.position, body_b.start.orientation}, body_b.velocity);
+      const double second =
+          contact.normal.dot(body_a.acceleration_at(contact.point_a - body_a.start.position) -
+                             body_b.acceleration_at(contact.point_b - body_b.start.position)) +
+          kinematics.curvature_acceleration;
+      const bool on_face =
+          contact.owner == NormalOwner::kFaceA || contact.owner == NormalOwner::kFaceB;
+      const LocalSurface& incident =
+          contact.owner == NormalOwner::kFaceA ? contact.surface_b : contact.surface_a;
+      const bool is_of_a = contact.owner == NormalOwner::kFaceB;  // the incident shape
+      const bool is_ball = std::holds_alternative<Capsule>(is_of_a ? a : b);
+      const bool is_material =
+          on_face && (is_ball || (incident.radius_along == 0.0 && incident.radius_across == 0.0));
+      const double h = 1e-3;
+      const auto measured =
+          is_material
+              ? differences(
+                    [&](double t) {
+                      return std::optional(material_gap_at(contact, body_a, body_b, t,
+                                                           is_ball ? incident.radius_along : 0.0));
+                    },
+                    h)
+              : differences([&](double t) { return gap_at(a, body_a, b, body_b, contact, t); }, h);
+      const double scale = bending_scale(contact);
+      if (!measured || kinematics.degenerate || scale < 0.2) {
+        ++left_out;
+        continue;
+      }
+      const std::string kind = kind_of(contact, !is_material);
+      const double tolerance = 1e-6 / std::pow(scale, 5);
+      ASSERT_NEAR(measured->first, kinematics.d_dot, tolerance) << kind << "\n" << describe(pair);
+      ASSERT_NEAR(measured->second, second, tolerance) << kind << " " << scale << "\n"
+                                                       << describe(pair);
+      ++compared[kind];
+      worst[kind] = std::max(worst[kind], std::abs(measured->second - second));
+    }
+  }
+  for (const auto& [kind, count] : compared) {
+    std::printf("    %-40s %6d contacts, d'' within %.1e\n", kind.c_str(), count, worst[kind]);
+  }
+  std::printf("    left out: %d\n", left_out);
+  for (const char* kind :
+       {"face of A, face/round", "face of B, round/face", "face of B, vertex/face, clipped",
+        "curved, round/round", "curved, round/vertex", "curved, vertex/round", "curved, round/edge",
+        "curved, generator/round", "curved, round/generator", "curved, generator/vertex",
+        "curved, generator/edge", "curved, generator/generator"}) {
     EXPECT_GT(compared[kind], 0) << kind;
   }
 }
