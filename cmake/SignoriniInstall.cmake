@@ -97,6 +97,8 @@ signorini_pkg_config(core "impacts, resting forces, time stepping"
   REQUIRES signorini-model signorini-lcp)
 signorini_pkg_config(hulls "convex hulls of points" REQUIRES signorini-collision
   PRIVATE_LIBS -lqhull_r)
+signorini_pkg_config(mesh_files "triangles of mesh files" REQUIRES signorini-model
+  PRIVATE_LIBS -lassimp)
 signorini_pkg_config(collision "shapes, contact sets, contact times" REQUIRES signorini-model)
 string(REGEX REPLACE "([a-z]+)" "signorini-\\1" c_requires "${SIGNORINI_C_NEEDS}")
 string(REPLACE " " ";" c_requires "${c_requires}")

@@ -37,14 +37,15 @@ Track run_bullet(const Scene& scene, const BulletProfile& profile, const StopFla
   Track track;
   track.engine = "bullet";
   track.step = scene.step;
+  track.remarks.assign(world.remarks().begin(), world.remarks().end());
   const long steps = scene.step_count();
-  TrackRecorder recorder(scene.bodies, scene.gravity, recording_stride(steps, scene.bodies.size()),
-                         track);
+  TrackRecorder recorder(scene.bodies, scene.gravity, steps, track);
   const auto record = [&](double time, std::vector<BodySample> sample) {
     const OverlapMeasure overlap = measure_overlap(ruler, state_of(sample));
     recorder.record(time, std::move(sample), overlap.deepest, overlap.contacts);
   };
   record(0.0, world.sample());
+  recorder.record_frame({});
   for (long k = 1; k <= steps; ++k) {
     if (stop != nullptr && stop->load()) {
       track.interrupted = true;
@@ -59,7 +60,8 @@ Track run_bullet(const Scene& scene, const BulletProfile& profile, const StopFla
       track.broke_down = true;
       break;
     }
-    if (recorder.wants(k, steps)) record(static_cast<double>(k) * scene.step, std::move(sample));
+    if (recorder.wants(k)) record(static_cast<double>(k) * scene.step, std::move(sample));
+    if (recorder.wants_frame(k)) recorder.record_frame(world.contacts(scene.step));
   }
   return track;
 }

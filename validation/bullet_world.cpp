@@ -1,15 +1,16 @@
 #include <signorini/validation/bullet_world.h>
 #include <signorini/validation/input_error.h>
 
+#include <BulletCollision/CollisionDispatch/btCompoundCollisionAlgorithm.h>
+#include <BulletCollision/CollisionDispatch/btCompoundCompoundCollisionAlgorithm.h>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <variant>
 
 namespace signorini::validation {
 namespace {
 
-/// Bullet's material hook is a plain function: the scene whose world is stepping.
+/// Bullet's hooks are plain functions: the scene whose world is stepping.
 const Scene* stepping_scene = nullptr;
 
 btVector3 bullet(const Vec3& v) {
@@ -26,6 +27,22 @@ Quat ours(const btQuaternion& q) {
 }
 btTransform bullet(const Pose& pose) {
   return btTransform(bullet(pose.orientation), bullet(pose.position));
+}
+
+/// The collider whose shape, or a part of it (a triangle of a mesh), this is; null if none.
+const collision::Collider* collider_of(const btCollisionObjectWrapper* wrapper) {
+  for (; wrapper != nullptr; wrapper = wrapper->m_parent) {
+    const int index = wrapper->getCollisionShape()->getUserIndex();
+    if (index >= 0) return &stepping_scene->colliders[index];
+  }
+  return nullptr;
+}
+
+/// Parts of compounds meet if their colliders' filters let them.
+bool parts_may_meet(const btCollisionShape* a, const btCollisionShape* b) {
+  if (a->getUserIndex() < 0 || b->getUserIndex() < 0) return true;
+  return collision::may_collide(stepping_scene->colliders[a->getUserIndex()].filter,
+                                stepping_scene->colliders[b->getUserIndex()].filter);
 }
 
 /// The turn to the principal axes, and the moments about them. A diagonal inertia stays as it is.
@@ -59,7 +76,9 @@ BulletWorld::BulletWorld(const Scene& scene, const BulletProfile& profile)
       profile_(profile),
       dispatcher_(&configuration_),
       world_(&dispatcher_, &broadphase_, &solver_, &configuration_),
+      filter_(scene),
       parts_(scene.bodies.size()) {
+  world_.getPairCache()->setOverlapFilterCallback(&filter_);
   btContactSolverInfo& info = world_.getSolverInfo();
   info.m_numIterations = profile.iterations;
   info.m_splitImpulse = 1;
@@ -78,21 +97,32 @@ BulletWorld::~BulletWorld() {
   for (BodyParts& parts : parts_) world_.removeRigidBody(parts.body.get());
 }
 
-btCollisionShape* BulletWorld::make_shape(const collision::Collider& collider, Pose& pose) const {
-  if (const auto* sphere = std::get_if<collision::Sphere>(&collider.shape)) {
-    return new btSphereShape(sphere->radius);
+BulletWorld::PairFilter::PairFilter(const Scene& scene) : filters_(scene.bodies.size()) {
+  for (const collision::Collider& collider : scene.colliders) {
+    std::vector<collision::CollisionFilter>& filters = filters_[collider.body];
+    if (std::find(filters.begin(), filters.end(), collider.filter) == filters.end()) {
+      filters.push_back(collider.filter);
+    }
   }
-  if (const auto* box = std::get_if<collision::Box>(&collider.shape)) {
-    return new btBoxShape(bullet(box->half_extents));
+}
+
+bool BulletWorld::PairFilter::needBroadphaseCollision(btBroadphaseProxy* a,
+                                                      btBroadphaseProxy* b) const {
+  // Bullet's own rule first: it keeps fixed bodies from each other.
+  if ((a->m_collisionFilterGroup & b->m_collisionFilterMask) == 0 ||
+      (b->m_collisionFilterGroup & a->m_collisionFilterMask) == 0) {
+    return false;
   }
-  if (!std::holds_alternative<collision::HalfSpace>(collider.shape)) {
-    throw InputError(scene_.source + ": collider '" + collider.name +
-                     "': Bullet is given spheres, boxes and half-spaces only");
+  const auto filters_of = [this](const btBroadphaseProxy* proxy) -> const auto& {
+    const auto* object = static_cast<const btCollisionObject*>(proxy->m_clientObject);
+    return filters_[object->getUserIndex()];
+  };
+  for (const collision::CollisionFilter& first : filters_of(a)) {
+    for (const collision::CollisionFilter& second : filters_of(b)) {
+      if (collision::may_collide(first, second)) return true;
+    }
   }
-  // A half-space: the top face of a large box is its surface.
-  const double edge = profile_.ground_half_edge;
-  pose.position -= pose.orientation * Vec3(0.0, 0.0, edge);
-  return new btBoxShape(btVector3(edge, edge, edge));
+  return false;
 }
 
 void BulletWorld::add_shapes(int index, BodyParts& parts) {
@@ -101,10 +131,13 @@ void BulletWorld::add_shapes(int index, BodyParts& parts) {
   for (std::size_t c = 0; c < scene_.colliders.size(); ++c) {
     const collision::Collider& collider = scene_.colliders[c];
     if (collider.body != index) continue;
-    Pose pose = Pose{Vec3::Zero(), to_principal} * collider.local;
-    parts.shapes.emplace_back(make_shape(collider, pose));
-    parts.shapes.back()->setUserIndex(static_cast<int>(c));
-    parts.compound->addChildShape(bullet(pose), parts.shapes.back().get());
+    for (BulletShape& made : make_bullet_shapes(collider.shape, profile_.ground_half_edge)) {
+      const Pose pose = Pose{Vec3::Zero(), to_principal} * collider.local * made.in_ours;
+      made.shape->setUserIndex(static_cast<int>(c));
+      parts.compound->addChildShape(bullet(pose), made.shape.get());
+      if (!made.remark.empty()) remarks_.insert(made.remark);
+      parts.shapes.push_back(std::move(made));
+    }
   }
 }
 
@@ -123,7 +156,7 @@ void BulletWorld::add_body(int index) {
   btCollisionShape* shape = parts.compound.get();
   const bool single = parts.shapes.size() == 1 &&
                       parts.compound->getChildTransform(0) == btTransform::getIdentity();
-  if (single) shape = parts.shapes.front().get();
+  if (single) shape = parts.shapes.front().shape.get();
   btRigidBody::btRigidBodyConstructionInfo info(body.is_dynamic() ? body.mass : 0.0, nullptr, shape,
                                                 bullet(moments));
   info.m_startWorldTransform = bullet(Pose{state.x, (state.q * parts.principal).normalized()});
@@ -149,10 +182,10 @@ void BulletWorld::add_body(int index) {
 
 bool BulletWorld::set_pair_material(btManifoldPoint& point, const btCollisionObjectWrapper* a, int,
                                     int, const btCollisionObjectWrapper* b, int, int) {
-  const auto& colliders = stepping_scene->colliders;
-  const Material material =
-      pair(colliders[a->getCollisionShape()->getUserIndex()].material,
-           colliders[b->getCollisionShape()->getUserIndex()].material, stepping_scene->rule);
+  const collision::Collider* const first = collider_of(a);
+  const collision::Collider* const second = collider_of(b);
+  if (first == nullptr || second == nullptr) return false;
+  const Material material = pair(first->material, second->material, stepping_scene->rule);
   point.m_combinedFriction = material.friction;
   point.m_combinedRestitution = material.restitution;
   return true;
@@ -161,7 +194,11 @@ bool BulletWorld::set_pair_material(btManifoldPoint& point, const btCollisionObj
 void BulletWorld::step(double seconds) {
   stepping_scene = &scene_;
   gContactAddedCallback = set_pair_material;
+  gCompoundChildShapePairCallback = parts_may_meet;
+  gCompoundCompoundChildShapePairCallback = parts_may_meet;
   world_.stepSimulation(seconds, 0);  // 0 substeps: one step of exactly this length
+  gCompoundCompoundChildShapePairCallback = nullptr;
+  gCompoundChildShapePairCallback = nullptr;
   gContactAddedCallback = nullptr;
   stepping_scene = nullptr;
 }
@@ -174,6 +211,27 @@ std::vector<BodySample> BulletWorld::sample() const {
     samples[i].pose = {ours(pose.getOrigin()),
                        (ours(pose.getRotation()) * parts_[i].principal.conjugate()).normalized()};
     samples[i].velocity = {ours(body.getLinearVelocity()), ours(body.getAngularVelocity())};
+  }
+  return samples;
+}
+
+std::vector<ContactSample> BulletWorld::contacts(double step) const {
+  std::vector<ContactSample> samples;
+  for (int m = 0; m < dispatcher_.getNumManifolds(); ++m) {
+    // Bullet has no const access to its manifolds.
+    const btPersistentManifold& manifold =
+        *const_cast<btCollisionDispatcher&>(dispatcher_).getManifoldByIndexInternal(m);
+    for (int p = 0; p < manifold.getNumContacts(); ++p) {
+      const btManifoldPoint& point = manifold.getContactPoint(p);
+      // Points that the solver left out keep the impulse of an earlier step.
+      if (point.getDistance() > manifold.getContactProcessingThreshold()) continue;
+      const btVector3 impulse = point.m_appliedImpulse * point.m_normalWorldOnB +
+                                point.m_appliedImpulseLateral1 * point.m_lateralFrictionDir1 +
+                                point.m_appliedImpulseLateral2 * point.m_lateralFrictionDir2;
+      samples.push_back({manifold.getBody0()->getUserIndex(), manifold.getBody1()->getUserIndex(),
+                         ours(0.5 * (point.getPositionWorldOnA() + point.getPositionWorldOnB())),
+                         ours(impulse / step)});
+    }
   }
   return samples;
 }

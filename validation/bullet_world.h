@@ -1,11 +1,14 @@
 #pragma once
 
 #include <signorini/validation/bullet_profile.h>
+#include <signorini/validation/bullet_shapes.h>
 #include <signorini/validation/scene.h>
 #include <signorini/validation/track.h>
 
 #include <btBulletDynamicsCommon.h>
 #include <memory>
+#include <set>
+#include <string>
 #include <vector>
 
 namespace signorini::validation {
@@ -22,18 +25,32 @@ class BulletWorld {
   void step(double seconds);
   /// Poses and velocities of all bodies, our body frames.
   [[nodiscard]] std::vector<BodySample> sample() const;
+  /// The contact points of the last step, with the impulses that Bullet's solver left on them over
+  /// the step [s].
+  [[nodiscard]] std::vector<ContactSample> contacts(double step) const;
+  /// How Bullet's shapes differ from the scene's, one line a kind.
+  [[nodiscard]] const std::set<std::string>& remarks() const { return remarks_; }
 
  private:
   struct BodyParts {
     Quat principal = Quat::Identity();  ///< Bullet's body frame in ours
-    std::vector<std::unique_ptr<btCollisionShape>> shapes;
+    std::vector<BulletShape> shapes;
     std::unique_ptr<btCompoundShape> compound;
     std::unique_ptr<btRigidBody> body;
   };
 
   void add_body(int index);
   void add_shapes(int index, BodyParts& parts);
-  [[nodiscard]] btCollisionShape* make_shape(const collision::Collider& collider, Pose& pose) const;
+  /// Leaves out pairs of bodies of which no colliders meet, by their filters.
+  class PairFilter final : public btOverlapFilterCallback {
+   public:
+    explicit PairFilter(const Scene& scene);
+    bool needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* b) const override;
+
+   private:
+    std::vector<std::vector<collision::CollisionFilter>> filters_;  ///< of each body's colliders
+  };
+
   static bool set_pair_material(btManifoldPoint& point, const btCollisionObjectWrapper* a,
                                 int part_a, int index_a, const btCollisionObjectWrapper* b,
                                 int part_b, int index_b);
@@ -45,7 +62,9 @@ class BulletWorld {
   btDbvtBroadphase broadphase_;
   btSequentialImpulseConstraintSolver solver_;
   btDiscreteDynamicsWorld world_;
+  PairFilter filter_;
   std::vector<BodyParts> parts_;
+  std::set<std::string> remarks_;
 };
 
 }  // namespace signorini::validation

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <signorini/validation/playback.h>
+
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -75,6 +78,7 @@ struct SceneReport {
   std::vector<Table> tables;
   double signorini_seconds = -1.0;  ///< wall time of the run; -1: not run
   double bullet_seconds = -1.0;
+  std::optional<Playback> playback;  ///< none: nothing moved, or a single impact was judged
 
   /// kFail if any check failed, kPass if at least one passed and none failed, else kInformation.
   [[nodiscard]] Verdict verdict() const;

@@ -1,3 +1,4 @@
+#include <signorini/validation/playback_json.h>
 #include <signorini/validation/report_json.h>
 #include <signorini/validation/series_thinning.h>
 #include <signorini/validation/worst_check.h>
@@ -116,6 +117,7 @@ Json scene_json(const SceneReport& scene, const LinesToJson& lines_json) {
   for (const Check& check : scene.checks) result["checks"].push_back(check_json(check));
   for (const Plot& plot : scene.plots) result["plots"].push_back(plot_json(plot, lines_json));
   for (const Table& table : scene.tables) result["tables"].push_back(table_json(table));
+  result["playback"] = scene.playback ? playback_json(*scene.playback) : Json(nullptr);
   return result;
 }
 

@@ -1,5 +1,6 @@
 #include <signorini/validation/bullet_runner.h>
 #include <signorini/validation/checks.h>
+#include <signorini/validation/scene_playback.h>
 #include <signorini/validation/scene_run.h>
 #include <signorini/validation/signorini_runner.h>
 
@@ -91,10 +92,19 @@ Runs run_engines(const Scene& scene, const RunOptions& options, SceneReport& rep
     append(options.profile.describe(), report.settings);
     runs.bullet = run_theirs(scene, options.profile, options);
     report.bullet_seconds = runs.bullet->wall_seconds;
+    for (const std::string& remark : runs.bullet->remarks) {
+      report.settings.push_back("Bullet: " + remark);
+    }
     if (runs.bullet->broke_down) {
       report.notices.push_back(fmt::format(
           "Bullet's run ended after {} steps: a number was no longer finite", runs.bullet->steps));
     }
+  }
+  if (scene.bodies.size() <= kMostPlayedBodies) {
+    report.playback = make_playback(scene, runs);
+  } else {
+    report.notices.push_back(
+        fmt::format("no playback: {} bodies, at most {}", scene.bodies.size(), kMostPlayedBodies));
   }
   return runs;
 }

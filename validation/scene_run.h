@@ -42,8 +42,8 @@ struct Runs {
 /// Are unsolved steps of ours a failure of the scene, or what it is there to show?
 enum class UnsolvedSteps : unsigned char { kFail, kShow };
 
-/// Runs the scene in the engines chosen. Writes settings, seconds and notices into the report, and
-/// the checks that every scene has: every step of ours solved, every number finite.
+/// Runs the scene in the engines chosen. Writes settings, seconds, notices and the playback into
+/// the report, and the checks that every scene has: every step of ours solved, every number finite.
 /// @throws RunInterrupted
 [[nodiscard]] Runs run_engines(const Scene& scene, const RunOptions& options, SceneReport& report,
                                UnsolvedSteps unsolved = UnsolvedSteps::kFail);

@@ -1,8 +1,11 @@
 #include <signorini/validation/input_error.h>
+#include <signorini/validation/sdf_extras.h>
 #include <signorini/validation/sdf_reader.h>
+#include <signorini/validation/sdf_shapes.h>
 #include <signorini/validation/sdf_survey.h>
 #include <signorini/validation/urdf_extras.h>
 #include <signorini/validation/xml_check.h>
+#include <signorini/validation/xml_split.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -87,10 +90,16 @@ class ConsoleCapture {
 /// Builds a Scene from libsdformat's objects.
 class SceneBuilder {
  public:
-  SceneBuilder(Scene& scene, const UrdfExtras& extras, const SdfSurvey& survey)
-      : scene_(scene), extras_(extras), survey_(survey) {}
+  SceneBuilder(Scene& scene, const UrdfExtras& extras, const SdfExtras& sdf_extras,
+               const SdfSurvey& survey)
+      : scene_(scene),
+        extras_(extras),
+        sdf_extras_(sdf_extras),
+        survey_(survey),
+        shapes_(std::filesystem::path(scene.source).parent_path().string()) {}
 
   void add_world(const sdf::World& world) {
+    has_world_ = true;
     scene_.gravity = vector(world.Gravity());
     if (const sdf::Physics* physics = world.PhysicsDefault(); physics != nullptr) {
       scene_.step = physics->MaxStepSize();
@@ -128,22 +137,24 @@ class SceneBuilder {
   }
 
   void finish() {
+    if (!has_world_) {
+      scene_.notices.push_back(
+          "a model without a world: gravity 0 0 -9.8 m/s^2 and a step of 0.001 s are SDFormat's "
+          "defaults; nothing to stand on unless --ground adds it");
+    }
     std::sort(scene_.never_collide.begin(), scene_.never_collide.end());
     if (!scene_.never_collide.empty()) {
       scene_.notices.push_back(
           fmt::format("{} pairs of links of one model do not collide: no <self_collide>",
                       scene_.never_collide.size()));
     }
-    if (planes_ > 0) {
-      scene_.notices.push_back(fmt::format(
-          "<plane><size> ignored ({} planes): each is a whole half-space (in Bullet: a large box)",
-          planes_));
-    }
+    for (const std::string& line : shapes_.notices()) scene_.notices.push_back(line);
     for (const std::string& body : default_inertia_) {
       scene_.notices.push_back("body '" + body +
                                "' has no <inertial>: 1 kg and 1 kg m^2 about every axis, "
                                "SDFormat's default");
     }
+    if (!computed_inertia_.empty()) scene_.notices.push_back(computed_inertia_);
   }
 
  private:
@@ -184,7 +195,6 @@ class SceneBuilder {
     require(link.SemanticPose().Resolve(raw, "__model__"), "<pose>", *link.Element());
     const Pose link_pose = model_pose * to_pose(raw);
     const ignition::math::Inertiald& inertial = link.Inertial();
-    const Vec3 com = vector(inertial.Pose().Pos());
 
     Body body;
     body.name = name;
@@ -192,9 +202,6 @@ class SceneBuilder {
     body.mass = inertial.MassMatrix().Mass();
     body.inertia = matrix(inertial.Moi());
     body.gravity_scale = link.Element()->Get<bool>("gravity", true).first ? 1.0 : 0.0;
-    BodyState state;
-    state.x = link_pose * com;
-    state.q = link_pose.orientation;
     if (body.is_dynamic() && survey_.was_emptied(*link.Element())) {
       scene_.notices.push_back("skipped: body '" + name + "' has no supported shape left");
       return false;
@@ -202,13 +209,70 @@ class SceneBuilder {
     if (body.is_dynamic() && !link.Element()->HasElement("inertial")) {
       default_inertia_.push_back(name);
     }
+    // Poses in the link's frame until the centre of mass is known.
+    std::vector<collision::Collider> colliders;
+    for (std::uint64_t i = 0; i < link.CollisionCount(); ++i) {
+      colliders.push_back(
+          read_collision(*link.CollisionByIndex(i), body, link.CollisionCount() > 1, link.Name()));
+    }
+    Vec3 com = vector(inertial.Pose().Pos());
+    if (body.is_dynamic() && sdf_extras_.auto_inertia.contains(SdfSurvey::path(*link.Element()))) {
+      com = compute_inertia(link, colliders, body);
+    }
+    BodyState state;
+    state.x = link_pose * com;
+    state.q = link_pose.orientation;
     set_initial_velocity(*link.Element(), body, state);
+    for (collision::Collider& collider : colliders) {
+      collider.local.position -= com;
+      scene_.colliders.push_back(std::move(collider));
+    }
     scene_.bodies.push_back(body);
     scene_.state.push_back(state);
-    for (std::uint64_t i = 0; i < link.CollisionCount(); ++i) {
-      add_collision(*link.CollisionByIndex(i), com, name, link.CollisionCount() > 1, link.Name());
-    }
     return true;
+  }
+
+  /// <inertial auto="true">: mass and inertia from the shapes and their <density>, that of the
+  /// collision, else of the <inertial>, else 1000 kg/m^3 (SDFormat's default).
+  /// @return the centre of mass in the link's frame
+  Vec3 compute_inertia(const sdf::Link& link, const std::vector<collision::Collider>& colliders,
+                       Body& body) {
+    if (colliders.empty()) {
+      throw InputError(
+          survey_.locate(*link.Element()) +
+          ": <inertial auto=\"true\">: the link has no <collision> to compute it from");
+    }
+    const double of_link = density(*link.Element()->GetElement("inertial"), 1000.0);
+    std::vector<collision::MassProperties> parts;
+    Vec3 com = Vec3::Zero();
+    body.mass = 0.0;
+    for (std::size_t i = 0; i < colliders.size(); ++i) {
+      collision::MassProperties part = collision::mass_properties(
+          colliders[i].shape, density(*link.CollisionByIndex(i)->Element(), of_link));
+      part.centre = colliders[i].local * part.centre;
+      const Mat3 turn = colliders[i].local.orientation.toRotationMatrix();
+      part.inertia = turn * part.inertia * turn.transpose();
+      com += part.mass * part.centre;
+      body.mass += part.mass;
+      parts.push_back(part);
+    }
+    com /= body.mass;
+    body.inertia.setZero();
+    for (const collision::MassProperties& part : parts) {
+      const Vec3 arm = part.centre - com;
+      body.inertia +=
+          part.inertia + part.mass * (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose());
+    }
+    computed_inertia_ += fmt::format(
+        "{}body '{}' {:.6g} kg",
+        computed_inertia_.empty() ? "<inertial auto=\"true\">, computed from the shapes: " : ", ",
+        body.name, body.mass);
+    return com;
+  }
+
+  static double density(sdf::Element& element, double otherwise) {
+    const auto found = element.FindElement("density");
+    return found == nullptr || found->GetValue() == nullptr ? otherwise : numbers(*found).x();
   }
 
   void set_initial_velocity(sdf::Element& link, const Body& body, BodyState& state) {
@@ -225,47 +289,36 @@ class SceneBuilder {
                  state);
   }
 
-  void add_collision(const sdf::Collision& collision, const Vec3& com, const std::string& body_name,
-                     bool several, const std::string& link_name) {
+  /// The body's number is the next one's; the pose is in the link's frame.
+  collision::Collider read_collision(const sdf::Collision& collision, const Body& body,
+                                     bool several, const std::string& link_name) {
     ignition::math::Pose3d raw;
     require(collision.SemanticPose().Resolve(raw), "<pose>", *collision.Element());
-    Pose local = to_pose(raw);
-    local.position -= com;
     collision::Collider collider;
-    collider.body = static_cast<int>(scene_.bodies.size()) - 1;
-    collider.name = several ? body_name + "/" + collision.Name() : body_name;
+    collider.local = to_pose(raw);
+    collider.body = static_cast<int>(scene_.bodies.size());
+    collider.name = several ? body.name + "/" + collision.Name() : body.name;
     collider.material = material(*collision.Element(), link_name);
-    const sdf::Geometry& geometry = *collision.Geom();
-    switch (geometry.Type()) {
-      case sdf::GeometryType::BOX:
-        collider.shape = collision::Box{0.5 * vector(geometry.BoxShape()->Size())};
-        break;
-      case sdf::GeometryType::SPHERE:
-        collider.shape = collision::Sphere{geometry.SphereShape()->Radius()};
-        break;
-      case sdf::GeometryType::PLANE: {
-        const Vec3 normal = plane_normal(*collision.Element());
-        local.orientation = local.orientation * Quat::FromTwoVectors(Vec3::UnitZ(), normal);
-        collider.shape = collision::HalfSpace{};
-        ++planes_;
-        break;
-      }
-      default:
-        throw InputError(survey_.locate(*collision.Element()) + ": collision shape not supported");
-    }
-    collider.local = local;
-    scene_.colliders.push_back(collider);
+    collider.filter = filter(*collision.Element());
+    ShapeUse use;
+    use.is_dynamic = body.is_dynamic();
+    use.body = body.name;
+    use.where = survey_.locate(*collision.Element());
+    use.capsule_as_cylinder = collision.Name().find(kCapsuleMark) != std::string::npos;
+    const auto asked = sdf_extras_.optimization.find(SdfSurvey::path(*collision.Element()));
+    if (asked != sdf_extras_.optimization.end()) use.optimization = asked->second;
+    collider.shape = shapes_.read(collision.Element()->GetElement("geometry"), use, collider.local);
+    return collider;
   }
 
-  /// libsdformat normalises a zero normal to zero without a word.
-  Vec3 plane_normal(sdf::Element& collision) {
-    const auto plane = collision.GetElement("geometry")->GetElement("plane");
-    const Vec3 normal =
-        vector(plane->Get<ignition::math::Vector3d>("normal", {0.0, 0.0, 1.0}).first);
-    if (!(normal.norm() > 0.0)) {
-      throw InputError(survey_.locate(*plane) + ": <normal>: must not be zero");
-    }
-    return normal.normalized();
+  /// Two collide if their <collide_bitmask>s have a bit in common; SDFormat's default is 0xffff.
+  collision::CollisionFilter filter(sdf::Element& collision) {
+    std::uint32_t mask = 0xffff;
+    const auto surface = collision.FindElement("surface");
+    const auto contact = surface == nullptr ? nullptr : surface->FindElement("contact");
+    const auto element = contact == nullptr ? nullptr : contact->FindElement("collide_bitmask");
+    if (element != nullptr) mask = element->Get<unsigned int>();
+    return {mask, mask};
   }
 
   Material material(sdf::Element& collision, const std::string& link_name) {
@@ -288,9 +341,12 @@ class SceneBuilder {
 
   Scene& scene_;
   const UrdfExtras& extras_;
+  const SdfExtras& sdf_extras_;
   const SdfSurvey& survey_;
-  int planes_ = 0;
+  ShapeReader shapes_;
+  bool has_world_ = false;
   std::vector<std::string> default_inertia_;
+  std::string computed_inertia_;  ///< a notice
 };
 
 void add_ground(Scene& scene, double height) {
@@ -303,12 +359,16 @@ void add_ground(Scene& scene, double height) {
   collider.local.position = Vec3(0.0, 0.0, height);
   collider.material = {1.0, 1.0};
   collider.name = body.name;
+  collider.filter = {0xffffffffU, 0xffffffffU};
   scene.bodies.push_back(body);
   scene.state.emplace_back();
   scene.colliders.push_back(collider);
   scene.notices.push_back(fmt::format(
       "added: a fixed half-space z <= {} m, friction 1, restitution 1 (--ground)", height));
 }
+
+/// Worlds of more models than this are read one model at a time.
+constexpr int kMostModelsAtOnce = 100;
 
 sdf::SDFPtr parse(const std::string& text, const std::string& file, SceneFormat format,
                   const std::string& source, const ConsoleCapture& console) {
@@ -324,27 +384,11 @@ sdf::SDFPtr parse(const std::string& text, const std::string& file, SceneFormat 
   return document;
 }
 
-Scene read(const std::string& text, const std::string& file, const std::string& source,
-           const ReadOptions& options) {
-  tinyxml2::XMLDocument xml;
-  const SceneFormat format = parse_xml(text, source, xml);
-  check_numbers(xml, format, source);
-  if (format == SceneFormat::kSdf && !options.skip_unsupported) check_shapes(xml, source);
-  Scene scene;
-  scene.source = source;
-  scene.name = std::filesystem::path(source).stem().string();
-  UrdfExtras extras;
-  std::string checked_text = text;
-  if (format == SceneFormat::kUrdf) {
-    extras = read_urdf_extras(xml, source, options.skip_unsupported);
-    tinyxml2::XMLPrinter printer;
-    xml.Print(&printer);
-    checked_text = printer.CStr();
-  }
-
-  const ConsoleCapture console;
-  const sdf::SDFPtr document = parse(checked_text, file, format, source, console);
-  SdfSurvey survey(source, options.skip_unsupported);
+/// Adds the world or the model of one document.
+void add_document(const std::string& text, const std::string& file, SceneFormat format,
+                  const std::string& source, const ConsoleCapture& console, SdfSurvey& survey,
+                  SceneBuilder& builder) {
+  const sdf::SDFPtr document = parse(text, file, format, source, console);
   survey.walk(document->Root());
   sdf::Root root;
   if (const sdf::Errors errors = root.Load(document); !errors.empty()) {
@@ -356,14 +400,45 @@ Scene read(const std::string& text, const std::string& file, const std::string& 
   if (root.WorldCount() == 0 && root.Model() == nullptr) {
     throw InputError(source + ": holds neither a <world> nor a model");
   }
-  SceneBuilder builder(scene, extras, survey);
   if (root.WorldCount() == 1) {
     builder.add_world(*root.WorldByIndex(0));
   } else {
-    scene.notices.push_back(
-        "a model without a world: gravity 0 0 -9.8 m/s^2 and a step of 0.001 s are SDFormat's "
-        "defaults; nothing to stand on unless --ground adds it");
     builder.add_model(*root.Model(), Pose(), "");
+  }
+}
+
+Scene read(const std::string& text, const std::string& file, const std::string& source,
+           const ReadOptions& options) {
+  tinyxml2::XMLDocument xml;
+  const SceneFormat format = parse_xml(text, source, xml);
+  check_numbers(xml, format, source);
+  Scene scene;
+  scene.source = source;
+  scene.name = std::filesystem::path(source).stem().string();
+  UrdfExtras extras;
+  const SdfExtras sdf_extras = read_sdf_extras(xml);
+  std::string checked_text = text;
+  if (format == SceneFormat::kUrdf) {
+    extras = read_urdf_extras(xml, source, options.skip_unsupported);
+    tinyxml2::XMLPrinter printer;
+    xml.Print(&printer);
+    checked_text = printer.CStr();
+  }
+
+  const ConsoleCapture console;
+  SdfSurvey survey(source, options.skip_unsupported);
+  SceneBuilder builder(scene, extras, sdf_extras, survey);
+  if (format == SceneFormat::kSdf && can_be_split(xml, kMostModelsAtOnce)) {
+    const SplitWorld split = split_world(xml, source);
+    for (const auto& [name, count] : split.without_physics) {
+      survey.count_without_physics(name, count);
+    }
+    add_document(split.world, "", format, source, console, survey, builder);
+    for (const std::string& model : split.models) {
+      add_document(model, "", format, source, console, survey, builder);
+    }
+  } else {
+    add_document(checked_text, file, format, source, console, survey, builder);
   }
   builder.finish();
   for (const auto* lines : {&extras.notices}) {

@@ -20,8 +20,11 @@ struct ReadOptions {
 /// Reads an SDFormat world or model, or a URDF robot, through libsdformat 12.
 ///
 /// Bodies: one a link, its frame in the centre of mass with the link's axes; links of static models
-/// are fixed. Poses are resolved through the frame graph. Colliders: box, sphere, plane (a
-/// half-space with any normal; static models only; its size is ignored). Materials: friction from
+/// are fixed. Poses are resolved through the frame graph. Colliders: box, sphere, cylinder,
+/// capsule, ellipsoid, cone, plane (a half-space with any normal; static models only; its size is
+/// ignored), mesh (triangles; of a dynamic body their convex hull: sdf_shapes.h); several a link
+/// move as one. <inertial auto="true"> is computed from the shapes. Two colliders meet if their
+/// <collide_bitmask>s have a bit in common. Materials: friction from
 /// <surface><friction><ode><mu>, restitution from <bounce><restitution_coefficient>; a pair has the
 /// minimum of the two (Gazebo's rule). Links of one model collide only with <self_collide>. Gravity
 /// and <max_step_size> are the world's.

@@ -46,20 +46,10 @@ constexpr std::array<std::string_view, 10> kStructure = {
     "surface", "bounce", "physics", "friction", "inertial"};
 
 /// Used by the reader, or without meaning for a single run.
-constexpr std::array<std::string_view, 14> kUsed = {"pose",
-                                                    "static",
-                                                    "gravity",
-                                                    "max_step_size",
-                                                    "self_collide",
-                                                    "mu",
-                                                    "mu2",
-                                                    "mass",
-                                                    "inertia",
-                                                    "restitution_coefficient",
-                                                    "name",
-                                                    "geometry",
-                                                    "real_time_factor",
-                                                    "allow_auto_disable"};
+constexpr std::array<std::string_view, 15> kUsed = {
+    "pose", "static",   "gravity", "max_step_size",    "self_collide",
+    "mu",   "mu2",      "mass",    "inertia",          "restitution_coefficient",
+    "name", "geometry", "density", "real_time_factor", "allow_auto_disable"};
 
 constexpr std::array<std::string_view, 4> kWorldExtensions = {
     "signorini:title", "signorini:description", "signorini:duration", "signorini:pairing"};
@@ -143,6 +133,7 @@ void SdfSurvey::walk_children(const sdf::ElementPtr& element) {
 void SdfSurvey::mention_ignored(const sdf::ElementPtr& element) {
   if (element->GetFirstElement() == nullptr) {
     if (element->GetValue() == nullptr || has_default_value(*element)) return;
+    if (element->GetName() == "collide_bitmask") return;  // used
     Mention& mention = ignored_physics_[path_of(*element)];
     if (mention.count++ == 0) mention.first = locate(*element);
     return;
@@ -231,7 +222,7 @@ std::vector<std::string> SdfSurvey::notices() const {
   return lines;
 }
 
-std::string SdfSurvey::locate(const sdf::Element& element) const {
+std::string SdfSurvey::path(const sdf::Element& element) {
   std::string path;
   const auto add = [&path](const sdf::Element& part) {
     const std::string& kind = part.GetName();
@@ -242,6 +233,11 @@ std::string SdfSurvey::locate(const sdf::Element& element) const {
   };
   add(element);
   for (sdf::ElementPtr up = element.GetParent(); up != nullptr; up = up->GetParent()) add(*up);
+  return path;
+}
+
+std::string SdfSurvey::locate(const sdf::Element& element) const {
+  const std::string path = SdfSurvey::path(element);
   // Text that came from no file has libsdformat's own name for it.
   const bool in_file = !element.FilePath().empty() && !element.FilePath().starts_with('<');
   const std::string file = in_file ? element.FilePath() : source_;

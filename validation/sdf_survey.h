@@ -20,12 +20,19 @@ class SdfSurvey {
   /// mass or inertia that no body has; an unknown <signorini:...> element.
   void walk(const sdf::ElementPtr& element);
 
+  /// Elements without physics that were left out before the survey.
+  void count_without_physics(const std::string& element, int count) {
+    without_physics_[element] += count;
+  }
+
   /// One line for what has no physics, one for ignored physics, one for each skipped element.
   [[nodiscard]] std::vector<std::string> notices() const;
 
   /// True if the link had shapes and every one of them was skipped.
   [[nodiscard]] bool was_emptied(const sdf::Element& link) const;
 
+  /// "model 'm', link 'l'": as path_of() of xml_check.h.
+  [[nodiscard]] static std::string path(const sdf::Element& element);
   /// "FILE:12: model 'm', link 'l'".
   [[nodiscard]] std::string locate(const sdf::Element& element) const;
 

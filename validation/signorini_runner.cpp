@@ -18,6 +18,16 @@ std::vector<BodySample> sample_of(const Bodies& bodies, const State& state) {
   return sample;
 }
 
+std::vector<ContactSample> contacts_of(const StepReport& report, double step) {
+  std::vector<ContactSample> samples(report.contacts.size());
+  for (std::size_t c = 0; c < samples.size(); ++c) {
+    const Contact& contact = report.contacts[c];
+    samples[c] = {contact.body_a, contact.body_b, 0.5 * (contact.point_a + contact.point_b),
+                  report.impulses[c] / step};
+  }
+  return samples;
+}
+
 bool is_finite(const State& state) {
   return std::all_of(state.begin(), state.end(), [](const BodyState& body) {
     return body.x.allFinite() && body.q.coeffs().allFinite() && body.p.allFinite() &&
@@ -65,13 +75,13 @@ Track run_signorini(const Scene& scene, const TimeStepSettings& settings, const 
   track.step = settings.step;
   track.solver_seconds = 0.0;
   const long steps = scene.step_count();
-  TrackRecorder recorder(scene.bodies, scene.gravity, recording_stride(steps, scene.bodies.size()),
-                         track);
+  TrackRecorder recorder(scene.bodies, scene.gravity, steps, track);
   const auto record = [&](double time) {
     const OverlapMeasure overlap = measure_overlap(ruler, state);
     recorder.record(time, sample_of(scene.bodies, state), overlap.deepest, overlap.contacts);
   };
   record(0.0);
+  recorder.record_frame({});
   for (long k = 1; k <= steps; ++k) {
     if (stop != nullptr && stop->load()) {
       track.interrupted = true;
@@ -87,7 +97,8 @@ Track run_signorini(const Scene& scene, const TimeStepSettings& settings, const 
       track.broke_down = true;
       break;
     }
-    if (recorder.wants(k, steps)) record(time);
+    if (recorder.wants(k)) record(time);
+    if (recorder.wants_frame(k)) recorder.record_frame(contacts_of(report, settings.step));
   }
   return track;
 }

@@ -7,6 +7,8 @@ namespace signorini::validation {
 namespace {
 
 constexpr double kMostBodySamples = 2e6;
+constexpr double kMostFrames = 300.0;
+constexpr double kMostFrameBodySamples = 3e5;
 
 /// As a state, so that the energies are core's own.
 State to_state(const Bodies& bodies, const std::vector<BodySample>& sample) {
@@ -33,8 +35,13 @@ Vec3 momentum(const Bodies& bodies, const std::vector<BodySample>& sample) {
   return sum;
 }
 
-TrackRecorder::TrackRecorder(const Bodies& bodies, const Vec3& gravity, long stride, Track& track)
-    : bodies_(bodies), gravity_(gravity), stride_(stride), track_(track) {}
+TrackRecorder::TrackRecorder(const Bodies& bodies, const Vec3& gravity, long steps, Track& track)
+    : bodies_(bodies),
+      gravity_(gravity),
+      steps_(steps),
+      stride_(recording_stride(steps, bodies.size())),
+      frame_stride_(frame_stride(steps, bodies.size())),
+      track_(track) {}
 
 void TrackRecorder::record(double time, std::vector<BodySample> sample, double overlap,
                            int contacts) {
@@ -47,9 +54,22 @@ void TrackRecorder::record(double time, std::vector<BodySample> sample, double o
   track_.bodies.push_back(std::move(sample));
 }
 
+void TrackRecorder::record_frame(std::vector<ContactSample> contacts) {
+  track_.frames.push_back(track_.size() - 1);
+  track_.frame_contacts.push_back(std::move(contacts));
+}
+
 long recording_stride(long steps, std::size_t body_count) {
   const double samples = static_cast<double>(steps) * static_cast<double>(body_count);
   return std::max(1L, static_cast<long>(std::ceil(samples / kMostBodySamples)));
+}
+
+long frame_stride(long steps, std::size_t body_count) {
+  const long stride = recording_stride(steps, body_count);
+  const double count = static_cast<double>(std::max<std::size_t>(1, body_count));
+  const double frames = std::clamp(kMostFrameBodySamples / count, 2.0, kMostFrames);
+  const double records = static_cast<double>(steps) / static_cast<double>(stride);
+  return stride * std::max(1L, static_cast<long>(std::ceil(records / frames)));
 }
 
 }  // namespace signorini::validation

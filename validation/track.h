@@ -16,6 +16,14 @@ struct BodySample {
   Velocity velocity;
 };
 
+/// A contact of one step, as the engine solved it.
+struct ContactSample {
+  int body_a;
+  int body_b;
+  Vec3 point;  ///< halfway between the two bodies' points, at the start of the step, m
+  Vec3 force;  ///< on A, mean over the step, friction included, N
+};
+
 /// What a run recorded, whichever engine made it. Sample k is the state at time[k]; sample 0 is the
 /// initial state. Energies and overlaps are measured from the poses and velocities by the same
 /// code for both engines.
@@ -29,6 +37,11 @@ struct Track {
   std::vector<double> overlap;                  ///< deepest overlap of the scene, >= 0, m
   std::vector<int> contacts;                    ///< contacts with gap <= 0
 
+  /// The samples that are kept for playback, ascending, and the contacts of the steps that ended
+  /// there (the first frame, at the start, has none).
+  std::vector<std::size_t> frames;
+  std::vector<std::vector<ContactSample>> frame_contacts;
+
   long steps = 0;                       ///< taken
   std::map<std::string, long> endings;  ///< how the contact problems of the steps ended (ours)
   long unsolved_steps = 0;              ///< steps whose contact problem was not solved
@@ -37,8 +50,9 @@ struct Track {
   double projection_energy = 0.0;  ///< sum of the potential energy changes by projection (ours), J
   double wall_seconds = 0.0;       ///< of the steps alone, measuring and recording apart
   double solver_seconds = -1.0;    ///< inside the LCP solver (ours); -1: not measured
-  bool interrupted = false;        ///< the run was stopped before its end
-  bool broke_down = false;         ///< the run ended because a number was no longer finite
+  std::vector<std::string> remarks;  ///< how what was run differs from the scene
+  bool interrupted = false;          ///< the run was stopped before its end
+  bool broke_down = false;           ///< the run ended because a number was no longer finite
 
   [[nodiscard]] std::size_t size() const { return time.size(); }
   [[nodiscard]] double energy(std::size_t sample) const {
@@ -55,21 +69,29 @@ struct Track {
 /// Writes what a runner sees into a track: poses and velocities as given, energies from them.
 class TrackRecorder {
  public:
-  /// Keeps every `stride`-th step, and the last.
-  TrackRecorder(const Bodies& bodies, const Vec3& gravity, long stride, Track& track);
-  [[nodiscard]] bool wants(long step, long last) const {
-    return step % stride_ == 0 || step == last;
-  }
+  /// Keeps every recording_stride()-th of the steps and, for playback, every frame_stride()-th, and
+  /// the last step.
+  TrackRecorder(const Bodies& bodies, const Vec3& gravity, long steps, Track& track);
+  [[nodiscard]] bool wants(long step) const { return step % stride_ == 0 || step == steps_; }
   void record(double time, std::vector<BodySample> sample, double overlap, int contacts);
+  [[nodiscard]] bool wants_frame(long step) const {
+    return step % frame_stride_ == 0 || step == steps_;
+  }
+  /// Keeps the sample recorded last for playback.
+  void record_frame(std::vector<ContactSample> contacts);
 
  private:
   const Bodies& bodies_;
   Vec3 gravity_;
+  long steps_;
   long stride_;
+  long frame_stride_;
   Track& track_;
 };
 
 /// The stride that keeps a track within about 2 million body samples.
 [[nodiscard]] long recording_stride(long steps, std::size_t body_count);
+/// A multiple of it that keeps playback within 300 frames and about 300,000 body samples.
+[[nodiscard]] long frame_stride(long steps, std::size_t body_count);
 
 }  // namespace signorini::validation

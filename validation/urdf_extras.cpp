@@ -44,14 +44,26 @@ std::string refusal(const XMLElement& collision) {
   return unsupported_shape(shape == nullptr ? "empty" : shape->Name(), SceneFormat::kUrdf);
 }
 
+void mark_capsule(XMLElement& collision, int number) {
+  XMLElement* geometry = collision.FirstChildElement("geometry");
+  XMLElement* shape = geometry == nullptr ? nullptr : geometry->FirstChildElement("capsule");
+  if (shape == nullptr) return;
+  shape->SetName("cylinder");
+  collision.SetAttribute("name", fmt::format("{}_{}", kCapsuleMark, number).c_str());
+}
+
 void check_collisions(XMLElement& link, const std::string& source, bool skip_unsupported,
                       UrdfExtras& extras) {
   XMLElement* next = nullptr;
+  int number = 0;
   for (XMLElement* collision = link.FirstChildElement("collision"); collision != nullptr;
        collision = next) {
     next = collision->NextSiblingElement("collision");
     const std::string reason = refusal(*collision);
-    if (reason.empty()) continue;
+    if (reason.empty()) {
+      mark_capsule(*collision, number++);
+      continue;
+    }
     const std::string what = locate(*collision, source) + ": " + reason;
     if (!skip_unsupported) throw InputError(what);
     extras.notices.push_back("skipped: " + what);

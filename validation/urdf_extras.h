@@ -20,8 +20,12 @@ struct UrdfExtras {
   std::vector<std::string> notices;
 };
 
-/// Reads Bullet's <contact> values, and refuses collision shapes that are not box or sphere (the
-/// URDF parser would drop a capsule without an error).
+/// A <capsule> becomes a <cylinder> whose <collision> has this in its name, since libsdformat's
+/// URDF parser would drop it without an error.
+inline constexpr const char* kCapsuleMark = "signorini_capsule";
+
+/// Reads Bullet's <contact> values, marks capsules, and refuses collision shapes that are not
+/// supported.
 ///
 /// lateral_friction (default 0.5, Bullet's) and restitution (default 0) are used; every other
 /// <contact> value (rolling_friction, spinning_friction, friction_anchor, ...) is named in a

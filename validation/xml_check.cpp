@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <fmt/format.h>
 #include <map>
@@ -37,6 +38,9 @@ const std::map<std::string_view, NumberRule>& sdf_rules() {
       {"gravity", {3}},
       {"radius", {1, Bound::kPositive}},
       {"length", {1, Bound::kPositive}},
+      {"radii", {3, Bound::kPositive}},
+      {"scale", {3, Bound::kPositive}},
+      {"density", {1, Bound::kPositive}},
       {"normal", {3}},
       {"mu", {1, Bound::kNotNegative}},
       {"mu2", {1, Bound::kNotNegative}},
@@ -62,16 +66,15 @@ const std::map<std::pair<std::string_view, std::string_view>, NumberRule>& urdf_
       {{"origin", "rpy"}, {3}},
       {{"box", "size"}, {3, Bound::kPositive}},
       {{"sphere", "radius"}, {1, Bound::kPositive}},
+      {{"cylinder", "radius"}, {1, Bound::kPositive}},
+      {{"cylinder", "length"}, {1, Bound::kPositive}},
+      {{"capsule", "radius"}, {1, Bound::kPositive}},
+      {{"capsule", "length"}, {1, Bound::kPositive}},
+      {{"mesh", "scale"}, {3, Bound::kPositive}},
       {{"lateral_friction", "value"}, {1, Bound::kNotNegative}},
       {{"restitution", "value"}, {1, Bound::kUnitInterval}},
   };
   return kRules;
-}
-
-bool is_without_physics(std::string_view name) {
-  return name == "visual" || name == "sensor" || name == "plugin" || name == "gui" ||
-         name == "light" || name == "state" || name == "actor" || name == "scene" ||
-         name == "material" || name == "gazebo" || name == "transmission";
 }
 
 std::string_view wish(Bound bound) {
@@ -131,6 +134,26 @@ void check_text(const char* text, const NumberRule& rule, const XMLElement& elem
   }
 }
 
+/// libsdformat reads decimal and 0x...; it would read -1 as all bits.
+void check_bitmask(const XMLElement& element, const std::string& source) {
+  const std::string given = element.GetText() == nullptr ? "" : element.GetText();
+  const std::vector<std::string_view> parts = words(given);
+  bool good = parts.size() == 1;
+  if (good) {
+    std::string_view digits = parts[0];
+    const bool hexadecimal = digits.starts_with("0x") || digits.starts_with("0X");
+    if (hexadecimal) digits.remove_prefix(2);
+    std::uint32_t value = 0;
+    const auto [end, error] =
+        std::from_chars(digits.data(), digits.data() + digits.size(), value, hexadecimal ? 16 : 10);
+    good = error == std::errc() && end == digits.data() + digits.size();
+  }
+  if (!good) {
+    throw InputError(fmt::format("{}: <collide_bitmask>: must be an integer in [0, 2^32), got '{}'",
+                                 locate(element, source), given));
+  }
+}
+
 /// <size> is 3 positive numbers in a box and 2 in a plane.
 std::optional<NumberRule> sdf_rule(const XMLElement& element) {
   const std::string_view name = element.Name();
@@ -154,6 +177,7 @@ std::optional<NumberRule> sdf_rule(const XMLElement& element) {
 void check_element(const XMLElement& element, SceneFormat format, const std::string& source) {
   if (is_without_physics(element.Name())) return;
   if (format == SceneFormat::kSdf) {
+    if (std::string_view(element.Name()) == "collide_bitmask") check_bitmask(element, source);
     if (const std::optional<NumberRule> rule = sdf_rule(element)) {
       check_text(element.GetText(), *rule, element, fmt::format("<{}>", element.Name()), source);
     }
@@ -171,32 +195,26 @@ void check_element(const XMLElement& element, SceneFormat format, const std::str
   }
 }
 
-void check_shape(const XMLElement& element, const std::string& source) {
-  if (is_without_physics(element.Name())) return;
-  if (std::string_view(element.Name()) == "collision") {
-    const XMLElement* geometry = element.FirstChildElement("geometry");
-    const XMLElement* shape = geometry == nullptr ? nullptr : geometry->FirstChildElement();
-    const std::string reason =
-        unsupported_shape(shape == nullptr ? "empty" : shape->Name(), SceneFormat::kSdf);
-    if (!reason.empty()) throw InputError(locate(element, source) + ": " + reason);
-  }
-  for (const XMLElement* child = element.FirstChildElement(); child != nullptr;
-       child = child->NextSiblingElement()) {
-    check_shape(*child, source);
-  }
-}
-
 }  // namespace
 
-std::string unsupported_shape(std::string_view shape, SceneFormat format) {
-  const bool sdf = format == SceneFormat::kSdf;
-  if (shape == "box" || shape == "sphere" || (sdf && shape == "plane")) return "";
-  return fmt::format("collision shape <{}> is not supported (supported: box, sphere{})", shape,
-                     sdf ? ", plane" : "");
+bool is_without_physics(std::string_view name) {
+  return name == "visual" || name == "sensor" || name == "plugin" || name == "gui" ||
+         name == "light" || name == "state" || name == "actor" || name == "scene" ||
+         name == "material" || name == "gazebo" || name == "transmission";
 }
 
-void check_shapes(const tinyxml2::XMLDocument& document, const std::string& source) {
-  check_shape(*document.RootElement(), source);
+std::string unsupported_shape(std::string_view shape, SceneFormat format) {
+#ifdef SIGNORINI_HAS_MESH_FILES
+  constexpr std::string_view kMesh = ", mesh";
+#else
+  constexpr std::string_view kMesh = "";  // needs SIGNORINI_WITH_ASSIMP
+#endif
+  const std::string supported =
+      format == SceneFormat::kSdf
+          ? fmt::format("box, sphere, cylinder, capsule, ellipsoid, cone, plane{}", kMesh)
+          : fmt::format("box, sphere, cylinder, capsule{}", kMesh);
+  if ((", " + supported + ",").find(fmt::format(", {},", shape)) != std::string::npos) return "";
+  return fmt::format("collision shape <{}> is not supported (supported: {})", shape, supported);
 }
 
 SceneFormat parse_xml(const std::string& text, const std::string& source,
@@ -218,7 +236,7 @@ void check_numbers(const tinyxml2::XMLDocument& document, SceneFormat format,
   check_element(*document.RootElement(), format, source);
 }
 
-std::string locate(const XMLElement& element, const std::string& source) {
+std::string path_of(const XMLElement& element) {
   std::string path;
   for (const tinyxml2::XMLNode* node = &element; node != nullptr; node = node->Parent()) {
     const XMLElement* ancestor = node->ToElement();
@@ -228,6 +246,11 @@ std::string locate(const XMLElement& element, const std::string& source) {
     path = fmt::format("{} '{}'{}{}", name, ancestor->Attribute("name"), path.empty() ? "" : ", ",
                        path);
   }
+  return path;
+}
+
+std::string locate(const XMLElement& element, const std::string& source) {
+  const std::string path = path_of(element);
   return fmt::format("{}:{}{}{}", source, element.GetLineNum(), path.empty() ? "" : ": ", path);
 }
 

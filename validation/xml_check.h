@@ -25,14 +25,15 @@ SceneFormat parse_xml(const std::string& text, const std::string& source,
 void check_numbers(const tinyxml2::XMLDocument& document, SceneFormat format,
                    const std::string& source);
 
-/// Empty for a collision shape that we have (SDFormat: box, sphere, plane; URDF: box, sphere), else
-/// "collision shape <cylinder> is not supported (supported: ...)".
+/// Empty for a collision shape that this build reads, else "collision shape <polyline> is not
+/// supported (supported: ...)".
 [[nodiscard]] std::string unsupported_shape(std::string_view shape, SceneFormat format);
 
-/// Refuses an SDFormat document with an unsupported collision shape before libsdformat builds it,
-/// which takes gigabytes for a world of thousands of models. @throws InputError naming file, line,
-/// model, link, collision and shape.
-void check_shapes(const tinyxml2::XMLDocument& document, const std::string& source);
+/// Elements whose content a run does not use: <visual>, <sensor>, <plugin> ...
+[[nodiscard]] bool is_without_physics(std::string_view element);
+
+/// "model 'm', link 'l', collision 'c'": the named elements around an element, itself included.
+[[nodiscard]] std::string path_of(const tinyxml2::XMLElement& element);
 
 /// "FILE:12: model 'm', link 'l', collision 'c'": where an element lies.
 [[nodiscard]] std::string locate(const tinyxml2::XMLElement& element, const std::string& source);
