@@ -151,8 +151,21 @@ long double step_above(double z, const Interval& w, double s, long double lower,
   return magnitude(r);
 }
 
-/// |z_c - P_K(z_c - w~_c / s)| from above: long double at the middle of w, and what the width of w
-/// and rounding can add (P_K does not expand distances, w~ expands them by at most 1 + mu).
+/// |min(|z_c|, w_N / s)| of a Coulomb cone, from above, but for rounding |z_c|, 2^-60 of it.
+long double normal_part_above(const FrictionCone& cone, const Vector& z, const Interval& w_normal,
+                              long double s) {
+  long double length = 0.0L;
+  for (int k = 0; k < cone.dimension; ++k) {
+    length = std::hypot(length, static_cast<long double>(z[cone.normal_row + k]));
+  }
+  const long double closing = -w_normal.lower / s;
+  const long double opening = std::min(length, w_normal.upper / s);
+  return std::max(closing, opening) * (1.0L + 0x1p-60L);
+}
+
+/// The residual |r_c(s)| of a cone (certificate.h) from above: long double at the middle of w, and
+/// what the width of w and rounding can add (P_K does not expand distances, w~ expands them by at
+/// most 1 + mu).
 long double cone_step_above(const Problem& problem, const FrictionCone& cone, const Vector& z,
                             const std::vector<Interval>& w, long double s) {
   const int d = cone.dimension;
@@ -178,7 +191,12 @@ long double cone_step_above(const Problem& problem, const FrictionCone& cone, co
   for (int k = 0; k < d; ++k) {
     sum = std::hypot(sum, z[cone.normal_row + k] - projected[k]);
   }
-  return sum + (1.0L + mu) * (width / s + 0x1p-58L * size);
+  const long double step = sum + (1.0L + mu) * (width / s + 0x1p-58L * size);
+  if (problem.friction_law == FrictionLaw::kAssociated) {
+    return step;
+  }
+  const long double normal = normal_part_above(cone, z, w[cone.normal_row], s);
+  return normal >= step || std::isnan(normal) ? normal : step;
 }
 
 Matrix block_of(const Matrix& M, const FrictionCone& cone) {
@@ -217,7 +235,20 @@ mpq_class exact_step(const Rows& rows, const Vector& z, int i, const mpq_class& 
   return absolute(own - clamp(own - w / s, lower, upper));
 }
 
-/// The same of a cone, with kBits bits after the exact w.
+/// |min(|z_c|, w_N / s)| of a Coulomb cone.
+mpf_class exact_normal_part(const FrictionCone& cone, const Vector& z, const mpq_class& w_normal,
+                            const mpq_class& s) {
+  mpf_class length(0.0, kBits);
+  for (int k = 0; k < cone.dimension; ++k) {
+    const mpf_class value(z[cone.normal_row + k], kBits);
+    length += value * value;
+  }
+  length = sqrt(length);
+  const mpf_class normal(mpq_class(w_normal / s), kBits);
+  return abs(std::min(length, normal));
+}
+
+/// The same as exact_step() of a cone, with kBits bits after the exact w.
 mpf_class exact_cone_step(const Problem& problem, const FrictionCone& cone, const Vector& z,
                           const std::vector<mpq_class>& w, const mpq_class& s) {
   const int d = cone.dimension;
@@ -257,7 +288,10 @@ mpf_class exact_cone_step(const Problem& problem, const FrictionCone& cone, cons
     const mpf_class r(mpf_class(z[cone.normal_row + k], kBits) - p[k], kBits);
     sum += r * r;
   }
-  return sqrt(sum);
+  const mpf_class step = sqrt(sum);
+  return problem.friction_law == FrictionLaw::kCoulomb
+             ? std::max(step, exact_normal_part(cone, z, w[cone.normal_row], s))
+             : step;
 }
 
 bool within(const mpq_class& residual, const mpq_class& floor, double tolerance, Status status) {

@@ -294,6 +294,12 @@ double friction(Dice& dice) {
   return dice.percent(60) ? dice.uniform() : kValues[static_cast<std::size_t>(dice.integer(0, 4))];
 }
 
+/// The same for a cone, whose residual must not shrink with mu.
+double cone_friction(Dice& dice) {
+  constexpr std::array kValues = {0.0, 1e-10, 0.3, 1.0, 1e6, 1e9, 1e12};
+  return dice.percent(60) ? dice.uniform() : kValues[static_cast<std::size_t>(dice.integer(0, 6))];
+}
+
 const char* limits(Dice& dice, Problem& problem) {
   const int n = static_cast<int>(problem.size());
   for (int row = 1; row < n; ++row) {
@@ -314,7 +320,7 @@ const char* cones(Dice& dice, Problem& problem) {
   const int dimension = dice.percent(70) ? 3 : 2;
   for (int row = 0; row + dimension <= n;) {
     if (dice.percent(85)) {
-      problem.cones.push_back({row, dimension, friction(dice)});
+      problem.cones.push_back({row, dimension, cone_friction(dice)});
       row += dimension;
     } else {
       ++row;

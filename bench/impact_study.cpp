@@ -62,9 +62,7 @@ bool is_in_cones(const RandomImpact& impact, const ImpactReport& report) {
   cones.A().multiply(z.data(), after.data());
   after += cones.problem.q;
   for (std::size_t i = 0; i < impact.contacts.size(); ++i) {
-    // A residual |P_K(-u~)| of `allowed` is an approach of sqrt(1 + mu^2) times it.
-    const double approach = -after[cones.normal_row[i]] / std::hypot(1.0, cones.friction[i]);
-    worst = std::max(worst, approach);
+    worst = std::max(worst, -after[cones.normal_row[i]]);
   }
   return worst <= allowed;
 }

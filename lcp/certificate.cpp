@@ -157,8 +157,10 @@ Certifier::Measure Certifier::measure_cone(const Problem& problem, std::size_t c
   std::array<long double, 3> w{};
   std::copy(w_.data() + first, w_.data() + first + d, w.data());
   Measure sum;
-  sum.min_w = static_cast<double>(w[0]);
-  if (problem.friction_law == FrictionLaw::kCoulomb) {
+  const long double w_normal = w[0];
+  sum.min_w = static_cast<double>(w_normal);
+  const bool is_coulomb = problem.friction_law == FrictionLaw::kCoulomb;
+  if (is_coulomb) {
     w[0] += mu * tangential_norm(d, w.data());
   }
   // z - P_K(x), x = z - w / scale, by Moreau as w / scale + (x - P_K(x)): nothing of w is lost
@@ -190,9 +192,14 @@ Certifier::Measure Certifier::measure_cone(const Problem& problem, std::size_t c
     }
     return std::hypot(rest[0], tangential_norm(d, rest.data()));
   };
+  const long double length = std::hypot(z[0], tangential);
+  const auto residual = [&](long double scale) {
+    const long double normal = is_coulomb ? std::abs(std::min(length, w_normal / scale)) : 0.0L;
+    return std::max(step(scale), normal);
+  };
   const long double scale = scale_[first];
-  sum.natural = step(1.0L);
-  sum.unit_free = scale * step(scale);
+  sum.natural = residual(1.0L);
+  sum.unit_free = scale * residual(scale);
   long double size = 0.0L;
   long double z_size = 0.0L;
   for (int k = 0; k < d; ++k) {

@@ -19,7 +19,19 @@ namespace signorini::lcp {
 /// friction cone K are measured together, in the Euclidean norm: with w~ = w + mu |w_T| n
 /// (Coulomb; associated: w~ = w) and D_c the largest eigenvalue of the symmetric part of M_cc,
 ///
-///     r_c(s) = z_c - P_K(z_c - w~_c / s).
+///     r_c(s) = z_c - P_K(z_c - w~_c / s),
+///
+/// and a Coulomb cone's |r_c(s)| is at least
+///
+///     e_c(s) = |min(|z_c|, w_N / s)|,
+///
+/// its normal part, which no mu shrinks: P_K sees a contact that closes with -w_N <= mu |w_T| only
+/// as (-w_N) / sqrt(1 + mu^2), nothing for a large mu. Where both are at most t / D_c, z_c and w_c
+/// are within t of a pair that obeys the law exactly, D_c |z' - z| <= t, |w'_N - w_N| <= t,
+/// |w'_T - w_T| <= t, whatever mu is. With p = P_K(z_c - w~_c / D_c), w~ - D r lies in the dual
+/// cone K* and is orthogonal to p, so that z' = p, w' = (0, w_T - D r_T) slides or sticks; that is
+/// the pair if |w_N| <= t. Else w_N > t and D |z_c| <= t: z' = 0, w' = w. (The associated law needs
+/// no such term: there z' = p, w' = w - D r.)
 ///
 /// Starts as NaN.
 struct Certificate {

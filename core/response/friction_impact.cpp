@@ -123,9 +123,7 @@ class FrictionImpact {
       const double outside =
           height == 1 ? -z[row] : lcp::cone_violation(cones_.friction[i], 3, z.data() + row);
       const double scale = diagonal.segment(row, height).maxCoeff();
-      // A residual |P_K(-u~)| of `allowed` is an approach of sqrt(1 + mu^2) times it.
-      const double approach = allowed * std::hypot(1.0, cones_.friction[i]);
-      if (after[row] < -approach || scale * outside > allowed) {
+      if (after[row] < -allowed || scale * outside > allowed) {
         return false;
       }
     }

@@ -12,6 +12,7 @@
 #include <sstream>
 #include <string>
 #include <unistd.h>
+#include <utility>
 
 namespace signorini::bench {
 namespace {
@@ -103,6 +104,23 @@ TEST(ClaimJudge, KnowsBothFrictionLaws) {
   EXPECT_EQ(wrong(sliding, associated), "");
   sliding.friction_law = lcp::FrictionLaw::kCoulomb;
   EXPECT_NE(wrong(sliding, associated), "");
+}
+
+TEST(ClaimJudge, SeesTheNormalPartUnderAnyFriction) {
+  // Closes with 1 while it slides with 1e-9, and holds with 1 while it opens with 1.
+  for (const auto& [z, w] :
+       {std::pair(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(-1, 1e-9, 0)),
+        std::pair(Eigen::Vector3d(1e-9, -1, 0), Eigen::Vector3d(1, 1e-9, 0))}) {
+    Problem problem = problem_of(Matrix(Matrix::Identity(3, 3)), w - z);
+    problem.cones = {{0, 3, 1e9}};
+    EXPECT_FALSE(surely_within(problem, z, kTolerance));
+    EXPECT_NE(wrong(problem, z), "");
+    const ExactResiduals r = exact_residuals(problem, z);
+    const lcp::Certificate c = lcp::certify(problem, z);
+    EXPECT_NEAR(r.unit_free.get_d(), c.unit_free_residual, 1e-12);
+    EXPECT_NEAR(r.natural.get_d(), c.natural_residual, 1e-12);
+    EXPECT_GT(r.unit_free, 0.4);
+  }
 }
 
 TEST(ClaimJudge, RefusesMalformedResultsAndProofsOfOtherProblems) {

@@ -1,4 +1,5 @@
 #include <signorini/lcp/certificate.h>
+#include <signorini/lcp/friction_cone.h>
 
 #include "allocation_count.h"
 
@@ -156,12 +157,85 @@ TEST(Certificate, MeasuresAConeByTheLargestEigenvalueOfItsBlock) {
   problem.cones = {{.normal_row = 0, .dimension = 2, .coefficient = 0.5}};
   EXPECT_DOUBLE_EQ(certify(problem, vector({0, 0})).unit_free_residual, 1.0);
   EXPECT_DOUBLE_EQ(certify(problem, vector({0, 0})).natural_residual, 8.0 / 9.0);
-  // outside the cone by |z_T| = 1: w = (-7, 3), 4 |(0, 1) - P((0, 1) - (-7 + 1.5, 3) / 4)|
-  const double x0 = 5.5 / 4.0;
+  // outside the cone by |z_T| = 1: w = (-7 + 10, 3), 4 |(0, 1) - P((0, 1) - (3 + 1.5, 3) / 4)|
+  problem.q[0] = 2.0;
+  const double x0 = -4.5 / 4.0;
   const double x1 = 1.0 - 0.75;
-  ASSERT_LT(x1, 0.5 * x0);
-  EXPECT_DOUBLE_EQ(certify(problem, vector({0, 1})).unit_free_residual,
-                   4.0 * std::hypot(x0, 1.0 - x1) / 8.0);
+  ASSERT_LT(x0 + 0.5 * x1, 0.0);  // P = 0
+  EXPECT_DOUBLE_EQ(certify(problem, vector({0, 1})).unit_free_residual, 4.0 / 2.0);
+}
+
+// P_K sees these as 1e-9: they are outside K* or inside K by that much, in the Euclidean norm.
+TEST(Certificate, SeesTheNormalPartOfACoulombContactUnderAnyFriction) {
+  const Matrix M = Matrix::Identity(3, 3);
+  const auto residual = [&M](const Vector& z, const Vector& w) {
+    Problem problem = lcp(M, w - z);
+    problem.cones = {{.normal_row = 0, .dimension = 3, .coefficient = 1e9}};
+    const Certificate c = certify(problem, z);
+    EXPECT_GE(c.natural_residual, 0.5 * c.unit_free_residual);
+    return c.unit_free_residual;
+  };
+  EXPECT_DOUBLE_EQ(residual(vector({0, 0, 0}), vector({-1, 1e-9, 0})), 1.0) << "it closes";
+  EXPECT_GT(residual(vector({1e-9, -1, 0}), vector({1, 1e-9, 0})), 0.5) << "it holds, and opens";
+  EXPECT_GT(residual(vector({1, 0, 0}), vector({-0.1, 1e-10, 0})), 0.05) << "pushes and closes";
+  EXPECT_EQ(residual(vector({0, 0, 0}), vector({1, 1, 0})), 0.0);
+  EXPECT_EQ(residual(vector({1, 5, 5}), vector({0, 0, 0})), 0.0);
+  EXPECT_LE(residual(vector({1e-9, -1, 0}), vector({0, 1, 0})), 1e-8) << "slides";
+}
+
+// z and w within the residual of a pair that obeys Coulomb's law: certificate.h's construction.
+TEST(Certificate, OfACoulombContactBoundsTheDistanceToItsLaw) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> power(-12.0, 12.0);
+  std::uniform_int_distribution<int> branch(0, 2);
+  int close = 0;
+  for (int trial = 0; trial < 20000; ++trial) {
+    const double mu = std::pow(10.0, power(random));
+    const double noise = std::pow(10.0, power(random) - 12.0);
+    Eigen::Vector3d z = Eigen::Vector3d::Zero();
+    Eigen::Vector3d w(0.0, normal(random), normal(random));
+    switch (branch(random)) {
+      case 0: w[0] = std::abs(normal(random)); break;  // apart
+      case 1:                                          // slides
+        z[0] = std::abs(normal(random)) * std::min(1.0, 1.0 / mu);
+        z.tail<2>() = -mu * z[0] * w.tail<2>().normalized();
+        break;
+      default:  // sticks
+        z = Eigen::Vector3d(1.0 + 1.0 / mu, 0.5, 0.5);
+        w.setZero();
+    }
+    for (int k = 0; k < 3; ++k) {
+      z[k] += noise * normal(random);
+      w[k] += noise * normal(random);
+    }
+    Problem problem = lcp(Matrix::Identity(3, 3), w - z);
+    problem.cones = {{.normal_row = 0, .dimension = 3, .coefficient = mu}};
+    w = z + problem.q;
+    const Certificate c = certify(problem, z);
+    const double t = c.unit_free_residual * problem.q.cwiseAbs().maxCoeff();
+    Eigen::Vector3d p = z - w;
+    p[0] -= mu * w.tail<2>().norm();
+    project_on_cone(mu, 3, p.data(), p.data());
+    const double rounding = 1e-14 * (1.0 + mu * w.tail<2>().norm() + z.norm() + w.norm());
+    const bool touches = std::abs(w[0]) <= t + rounding;
+    const Eigen::Vector3d near_z = touches ? p : Eigen::Vector3d(Eigen::Vector3d::Zero());
+    Eigen::Vector3d near_w = w;
+    if (touches) {
+      near_w << 0.0, (w - (z - p)).tail<2>();
+    }
+    EXPECT_LE((near_z - z).norm(), t + rounding) << mu << " " << z << " " << w;
+    EXPECT_LE(std::abs(near_w[0] - w[0]), t + rounding);
+    EXPECT_LE((near_w - w).tail<2>().norm(), t + rounding);
+    EXPECT_GE(near_w[0], 0.0);
+    EXPECT_LE(near_z.tail<2>().norm(), mu * near_z[0] * (1.0 + 1e-12));
+    EXPECT_LE(std::abs(near_z[0] * near_w[0]), 0.0);
+    EXPECT_LE(near_z.dot(near_w) + mu * near_z[0] * near_w.tail<2>().norm(),
+              (near_z.norm() + mu * near_z[0]) * rounding)
+        << "against its velocity";
+    close += t < 1e-3 ? 1 : 0;
+  }
+  EXPECT_GT(close, 5000);
 }
 
 TEST(Certificate, OfConesIsTheSameForEveryFormOfM) {
