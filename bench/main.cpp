@@ -12,6 +12,7 @@
 
 #ifdef SIGNORINI_HAS_COLLISION
 #include "bench/collision_command.h"
+#include "bench/stepping_command.h"
 #endif
 
 #ifdef SIGNORINI_HAS_BULLET
@@ -218,6 +219,7 @@ int run(int argc, char** argv) {
   const FuzzCommand fuzz(app);
 #ifdef SIGNORINI_HAS_COLLISION
   const CollisionCommand collision(app);
+  const SteppingCommand stepping(app);
 #endif
   try {
     app.parse(argc, argv);
@@ -235,6 +237,9 @@ int run(int argc, char** argv) {
 #ifdef SIGNORINI_HAS_COLLISION
   if (collision.is_asked()) {
     return collision.run();
+  }
+  if (stepping.is_asked()) {
+    return stepping.run();
   }
 #endif
   if (sequence.is_asked()) {

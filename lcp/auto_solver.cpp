@@ -15,6 +15,7 @@ constexpr Index kStructuredLemkeRows = 2000;  // a pivot costs up to n^2 / 2
 constexpr Index kLemkeRows = 1000;            // the same, with larger constants
 constexpr double kMassRatioForSweeps = 1e3;   // above it sweeps stall
 constexpr int kFirstSweeps = 48;
+constexpr int kConeInteriorSteps = 30;  // where nothing slides about ten are enough
 // An interior point of this many rows costs a few milliseconds: sweeps only win where little
 // accuracy is asked.
 constexpr Index kRowsForAccurateSweeps = 5000;
@@ -99,6 +100,11 @@ void AutoSolver::choose(const Problem& problem) {
   chain_.clear();
   sweeps_first_ = false;
   if (!problem.cones.empty()) {
+    if (factored && has_start_) {
+      chain_.push_back({"sticking", "perhaps little slides"});
+    } else if (factored) {
+      chain_.push_back({"cone-interior-point", "perhaps little slides", kConeInteriorSteps});
+    }
     chain_.push_back({"alart-curnier", "friction cones"});
     chain_.push_back({"nsgs", "friction cones"});
     return;
@@ -203,18 +209,19 @@ bool AutoSolver::sweep(const Problem& problem, const Deadline& deadline, Result&
 
 Status AutoSolver::iterate(const Problem& problem, const Vector* warm_start,
                            const Deadline& deadline, Result& result) {
+  has_start_ = warm_start != nullptr;
   choose(problem);
   best_merit_ = kInfinity;
   best_solver_ = {};
   best_status_ = Status::kNotRun;
-  has_start_ = warm_start != nullptr;
   if (has_start_) {
     start_ = *warm_start;
   }
   result.z.setZero();
   bool done = sweeps_first_ && settings_.max_iterations < 0 && sweep(problem, deadline, result);
   for (std::size_t k = 0; !done && k < chain_.size(); ++k) {
-    done = attempt(problem, chain_[k], settings_.max_iterations, deadline, result);
+    const int most = settings_.max_iterations >= 0 ? settings_.max_iterations : chain_[k].most;
+    done = attempt(problem, chain_[k], most, deadline, result);
   }
   result.solver = "auto";
   if (!best_solver_.empty()) {

@@ -27,7 +27,8 @@ struct AutoSettings : SolverSettings {
 ///
 /// | problem | tried in this order |
 /// |---|---|
-/// | friction cones | alart-curnier, nsgs |
+/// | friction cones | sticking (factored M, from a start) or cone-interior-point (factored M, from
+/// none), alart-curnier, nsgs |
 /// | symmetric M, n <= 100 | dantzig, structured-lemke, alart-curnier, lemke, pgs |
 /// | factored M, n > 100 | nncg, for a few sweeps and then if they promise to end soon (with a
 /// tolerance of 1e-5 or more, or n > 5000; mass ratio <= 1e3), interior-point, alart-curnier,
@@ -66,6 +67,7 @@ class AutoSolver : public Solver {
   struct Step {
     std::string_view solver;
     std::string_view reason;
+    int most = -1;  ///< iterations, where the settings do not say
   };
   void choose(const Problem& problem);
   Solver& solver(std::string_view name, int max_iterations, double time_left);

@@ -350,6 +350,157 @@ bool Certifier::solves_cone(const Problem& problem, const VectorRef& z, std::siz
   return tangential_norm(d, z_.data() + first) * kWiden <= mu * normal && normal >= 0.0L;
 }
 
+/// size_: |J||W||J^T||z| + C|z| + |q|, at least (|M||z| + |q|).
+void Certifier::bound_sizes(const Problem& problem, const FactoredMatrix& A, const VectorRef& z) {
+  absolute_p_.assign(A.degrees_of_freedom(), 0.0);
+  absolute_v_.assign(A.degrees_of_freedom(), 0.0);
+  for (int i = 0; i < A.rows(); ++i) {
+    const double size = std::abs(z[i]);
+    for (const FactoredMatrix::Entry& entry : A.entries(i)) {
+      const double* row = A.values(entry);
+      double* p = absolute_p_.data() + A.mass.offset(entry.block);
+      for (int k = 0; k < A.mass.dimension(entry.block); ++k) {
+        p[k] += std::abs(row[k]) * size;
+      }
+    }
+  }
+  for (int b = 0; b < A.mass.block_count(); ++b) {
+    const auto W = A.mass.stored(b);
+    const int d = A.mass.dimension(b);
+    const double* p = absolute_p_.data() + A.mass.offset(b);
+    double* v = absolute_v_.data() + A.mass.offset(b);
+    for (int j = 0; j < d; ++j) {
+      for (int i = 0; i < d; ++i) {
+        v[i] += std::abs(W(i, j)) * p[j];
+      }
+    }
+  }
+  size_.resize(problem.size());
+  for (int i = 0; i < A.rows(); ++i) {
+    double sum = A.compliance(i) * std::abs(z[i]) + std::abs(problem.q[i]);
+    for (const FactoredMatrix::Entry& entry : A.entries(i)) {
+      const double* row = A.values(entry);
+      const double* v = absolute_v_.data() + A.mass.offset(entry.block);
+      for (int k = 0; k < A.mass.dimension(entry.block); ++k) {
+        sum += std::abs(row[k]) * v[k];
+      }
+    }
+    size_[i] = sum;
+  }
+}
+
+/// The measure of a cone, or of a row outside cones, or a bound of it up to `fine`.
+Certifier::Measure Certifier::bound_group(const Problem& problem, int first, int cone,
+                                          double fine) {
+  const int d = cone < 0 ? 1 : problem.cones[cone].dimension;
+  const long double* z = z_.data() + first;
+  const long double* w = w_.data() + first;
+  long double tangential = 0.0L;
+  long double slip = 0.0L;
+  long double sum = 0.0L;
+  for (int k = 1; k < d; ++k) {
+    tangential += z[k] * z[k];
+    slip += w[k] * w[k];
+  }
+  long double w_tilde = w[0];
+  bool is_inside = false;
+  if (cone < 0) {
+    is_inside = z[0] >= bounds_[first].lower && z[0] <= bounds_[first].upper;
+  } else {
+    const long double mu = problem.cones[cone].coefficient;
+    const long double limit = 0.999L * mu * z[0];  // nearer to the boundary: measured
+    is_inside = z[0] > 0.0L && tangential <= limit * limit;
+    if (problem.friction_law == FrictionLaw::kCoulomb) {
+      w_tilde += mu * std::sqrt(slip);
+    }
+  }
+  sum = std::sqrt(w_tilde * w_tilde + slip);
+  if (!is_inside || !(sum <= fine)) {
+    const Eigen::Matrix3d block = diagonal_block(problem.M, first, d);
+    scale_[first] = cone >= 0           ? largest_eigenvalue(block, d)
+                    : block(0, 0) > 0.0 ? block(0, 0)
+                                        : 1.0;
+    return cone < 0 ? measure_row(first) : measure_cone(problem, cone);
+  }
+  Measure measure;
+  measure.natural = sum;
+  measure.unit_free = sum;
+  const bool is_lcp_row =
+      cone < 0 && bounds_[first].lower == 0.0L && bounds_[first].upper == kInfinity;
+  if (cone >= 0 || is_lcp_row) {
+    measure.min_z = static_cast<double>(z[0]);
+    measure.min_w = static_cast<double>(w[0]);
+    measure.z_dot_w = z[0] * w_tilde;
+    for (int k = 1; k < d; ++k) {
+      measure.z_dot_w += z[k] * w[k];
+    }
+  }
+  if (cone >= 0) {
+    measure.cone_violation = 0.0;
+  }
+  return measure;
+}
+
+/// Fills measures_ and size_ with bounds. @return false where there are none
+bool Certifier::bound(const Problem& problem, const VectorRef& z, double tolerance) {
+  const auto* A = std::get_if<FactoredMatrix>(&problem.M);
+  const Index n = problem.size();
+  const double q_inf = n > 0 ? problem.q.cwiseAbs().maxCoeff() : 0.0;
+  if (A == nullptr || !(q_inf > 0.0) || z.size() != n || !z.allFinite()) {
+    return false;
+  }
+  for (int b = 0; b < A->mass.block_count(); ++b) {
+    if (A->mass.is_factor(b)) {
+      return false;
+    }
+  }
+  z_.assign(z.data(), z.data() + n);
+  w_.resize(n);
+  body_p_.resize(A->degrees_of_freedom());
+  body_v_.resize(A->degrees_of_freedom());
+  A->transpose_times(z_.data(), body_p_.data());
+  A->apply_inverse_mass(body_p_.data(), body_v_.data());
+  A->times(body_v_.data(), z_.data(), w_.data());
+  bound_sizes(problem, *A, z);
+  find_bounds(problem);
+  scale_.resize(n);
+  measures_.assign(n, Measure{});
+  for (Index i = 0; i < n; ++i) {
+    w_[i] += problem.q[i];
+  }
+  const double fine = 0.1 * tolerance * q_inf;
+  std::size_t cone = 0;
+  for (int i = 0; i < n;) {
+    const bool starts_cone = cone < problem.cones.size() && problem.cones[cone].normal_row == i;
+    measures_[i] = bound_group(problem, i, starts_cone ? static_cast<int>(cone) : -1, fine);
+    if (!std::isfinite(measures_[i].natural) || !std::isfinite(measures_[i].unit_free)) {
+      return false;
+    }
+    i += starts_cone ? problem.cones[cone++].dimension : 1;
+  }
+  return true;
+}
+
+Certificate Certifier::certify_quickly(const Problem& problem, const VectorRef& z, double tolerance,
+                                       Vector* w) {
+  if (bound(problem, z, tolerance)) {
+    totals_.assign(1, Total{});
+    for (Index i = 0; i < problem.size(); ++i) {
+      totals_[0].add(static_cast<int>(i), measures_[i], size_[i], problem.q[i], z_[i]);
+    }
+    Certificate certificate = totals_[0].certificate();
+    certificate.backward_error = Certificate::kNaN;
+    if (judge(certificate, tolerance, Status::kStalled) == Status::kSolved) {
+      if (w != nullptr) {
+        w->resize(problem.size());
+        std::copy(w_.begin(), w_.end(), w->data());
+      }
+      return certificate;
+    }
+  }
+  return certify(problem, z, w);
+}
+
 Certificate Certifier::certify(const Problem& problem, const VectorRef& z, Vector* w) {
   const Index n = problem.size();
   if (!measure(problem, z)) {

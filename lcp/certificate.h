@@ -79,6 +79,13 @@ class Certifier {
   /// See certify(), which is this with new memory.
   [[nodiscard]] Certificate certify(const Problem& problem, const VectorRef& z,
                                     Vector* w = nullptr);
+  /// The same where that costs O(n) and shows that z is solved to the tolerance (factored M,
+  /// inverse masses that are kept as such, q not 0); else certify(). What is cheap is a bound: the
+  /// residuals of groups of rows inside their bounds are at most |w~|, whatever D is, since
+  /// projecting shortens distances, and count as that where it is below a tenth of the tolerance;
+  /// the floors take |J||W||J^T||z| for |M||z|; backward_error is NaN. All else is as in certify().
+  [[nodiscard]] Certificate certify_quickly(const Problem& problem, const VectorRef& z,
+                                            double tolerance, Vector* w = nullptr);
   /// One certificate an island, each with its own |q|_inf and floors, as if it were the whole
   /// problem. Where one island is refused (not finite), all are.
   /// @param islands of this problem @param certificates receives islands.count
@@ -119,6 +126,9 @@ class Certifier {
   /// Fills everything below for z. @return false if a number is not finite.
   [[nodiscard]] bool measure(const Problem& problem, const VectorRef& z);
   void multiply_by_matrix(const Problem& problem);
+  [[nodiscard]] bool bound(const Problem& problem, const VectorRef& z, double tolerance);
+  void bound_sizes(const Problem& problem, const FactoredMatrix& A, const VectorRef& z);
+  [[nodiscard]] Measure bound_group(const Problem& problem, int first, int cone, double fine);
   void find_bounds(const Problem& problem);
   [[nodiscard]] Measure measure_row(Index i) const;
   [[nodiscard]] Measure measure_cone(const Problem& problem, std::size_t cone) const;
@@ -127,12 +137,13 @@ class Certifier {
   [[nodiscard]] bool solves_cone(const Problem& problem, const VectorRef& z,
                                  std::size_t cone) const;
 
-  std::vector<long double> z_, w_;            // w = M z + q
-  std::vector<long double> body_p_, body_v_;  // of a factored M
-  std::vector<long double> size_;             // (|M||z|)_i + |q_i|
-  Vector scale_;                              // D of every row; of a cone at its normal row
-  std::vector<Eigen::Matrix3d> cone_blocks_;  // M_cc
-  std::vector<int> cone_of_row_;              // -1: none
+  std::vector<long double> z_, w_;               // w = M z + q
+  std::vector<long double> body_p_, body_v_;     // of a factored M
+  std::vector<double> absolute_p_, absolute_v_;  // |J^T||z| and |W| times it
+  std::vector<long double> size_;                // (|M||z|)_i + |q_i|
+  Vector scale_;                                 // D of every row; of a cone at its normal row
+  std::vector<Eigen::Matrix3d> cone_blocks_;     // M_cc
+  std::vector<int> cone_of_row_;                 // -1: none
   std::vector<Bounds> bounds_;
   std::vector<Measure> measures_;
   FactoredMatrix::VisitWorkspace visit_;

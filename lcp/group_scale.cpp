@@ -1,7 +1,9 @@
 #include <signorini/lcp/group_scale.h>
 
 #include <Eigen/Eigenvalues>
+#include <array>
 #include <cmath>
+#include <vector>
 
 namespace signorini::lcp {
 namespace {
@@ -25,17 +27,25 @@ Eigen::Matrix3d block_of(const SparseMatrix& M, int first, int d) {
 
 Eigen::Matrix3d block_of(const FactoredMatrix& M, int first, int d) {
   Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
-  Vector moved;
+  std::array<double, 6> of_rigid_body{};  // no allocation for these
+  std::vector<double> of_large_block;
   for (int i = 0; i < d; ++i) {
     block(i, i) = M.compliance(first + i);
     for (const FactoredMatrix::Entry& a : M.entries(first + i)) {
       const int size = M.mass.dimension(a.block);
-      moved.resize(size);
-      M.mass.apply_inverse(a.block, M.values(a), moved.data());
+      double* moved = of_rigid_body.data();
+      if (size > static_cast<int>(of_rigid_body.size())) {
+        of_large_block.resize(size);
+        moved = of_large_block.data();
+      }
+      M.mass.apply_inverse(a.block, M.values(a), moved);
       for (int j = 0; j < d; ++j) {
         for (const FactoredMatrix::Entry& b : M.entries(first + j)) {
           if (a.block == b.block) {
-            block(i, j) += moved.dot(Eigen::Map<const Vector>(M.values(b), size));
+            const double* row = M.values(b);
+            for (int k = 0; k < size; ++k) {
+              block(i, j) += moved[k] * row[k];
+            }
           }
         }
       }
@@ -54,7 +64,8 @@ double largest_eigenvalue(const Eigen::Matrix3d& block, int d) {
     most = 0.5 * (block(0, 0) + block(1, 1)) + std::hypot(half_difference, off);
   } else {
     const Eigen::Matrix3d symmetric = 0.5 * block + 0.5 * block.transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(symmetric, Eigen::EigenvaluesOnly);
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+    solver.computeDirect(symmetric, Eigen::EigenvaluesOnly);
     most = solver.eigenvalues()[2];
   }
   return most > 0.0 ? most : 1.0;

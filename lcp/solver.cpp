@@ -34,7 +34,10 @@ bool Deadline::passed() const {
 }
 
 void Solver::certify_result(const Problem& problem, Status ending, Result& result) {
-  result.certificate = certifier_.certify(problem, result.z, &result.w);
+  result.certificate =
+      settings().quick_certificate
+          ? certifier_.certify_quickly(problem, result.z, settings().tolerance, &result.w)
+          : certifier_.certify(problem, result.z, &result.w);
   result.status = judge(result.certificate, settings().tolerance, ending);
   if (is_solved(result.status)) {
     result.ray.resize(0);

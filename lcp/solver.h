@@ -28,6 +28,10 @@ struct SolverSettings {
   /// Fills Result::island_certificates. Doubles the cost of certifying; the status is that of the
   /// whole problem either way. With it a repeated solve allocates nothing more either.
   bool certify_islands = false;
+  /// Certifies by Certifier::certify_quickly(): the same verdict and the same bound on what is
+  /// solved, at O(n) instead of a product with |M|; floors and small residuals are bounds, the
+  /// backward error is left out. For many solves a second.
+  bool quick_certificate = false;
 
   /// @throws std::invalid_argument that names the setting, its value and the bound.
   void validate() const;

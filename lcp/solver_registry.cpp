@@ -11,6 +11,7 @@
 #include <signorini/lcp/pgs.h>
 #include <signorini/lcp/psor.h>
 #include <signorini/lcp/solver.h>
+#include <signorini/lcp/sticking.h>
 #include <signorini/lcp/structured_lemke.h>
 #include <signorini/lcp/symmetric_pgs.h>
 
@@ -54,6 +55,7 @@ constexpr std::array kEntries = {
     Entry{"dantzig", &make<Dantzig, DantzigSettings>},
     Entry{"block-pivoting", &make<BlockPivoting, BlockPivotingSettings>},
     Entry{"cone-interior-point", &make<ConeInteriorPoint, ConeInteriorPointSettings>},
+    Entry{"sticking", &make<Sticking, StickingSettings>},
     Entry{"alart-curnier", &make<AlartCurnier, AlartCurnierSettings>},
     Entry{"nsgs", &make<Nsgs, NsgsSettings>},
     Entry{"pgs", &make<Pgs, PgsSettings>},

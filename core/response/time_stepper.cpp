@@ -40,6 +40,12 @@ double deepest_overlap(const ContactSet& contacts) {
   return depth;
 }
 
+/// The gap that a contact may close, m: none where it is as near to touching as an overlap that is
+/// left alone. A face of which one corner is 1e-12 m off would else rest on the others.
+double may_close(double gap) {
+  return gap > kToleratedOverlap ? gap : 0.0;
+}
+
 // The contacts of a step's problem and how fast each may close.
 struct Selection {
   ContactSet contacts;
@@ -66,7 +72,7 @@ Selection select(const ContactSet& found, const lcp::Vector& d_dot, const lcp::V
     const bool bounces =
         touching && classify(d_dot[i], settings.restitution_threshold) == ContactClass::kColliding;
     selection.contacts.push_back(contact);
-    allowance.push_back(bounces ? e * d_dot[i] : std::max(contact.gap, 0.0) / h);
+    allowance.push_back(bounces ? e * d_dot[i] : may_close(contact.gap) / h);
   }
   selection.allowance =
       Eigen::Map<const lcp::Vector>(allowance.data(), static_cast<lcp::Index>(allowance.size()));

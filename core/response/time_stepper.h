@@ -43,7 +43,7 @@ struct TimeStepSettings {
   /// A tolerance of 1e-8 leaves velocity errors of up to 1e-8 |q|, in a resting scene 1e-8 h g =
   /// 4e-10 m/s. Such errors come back in the q of the next step; with mass ratios of 1000 and more
   /// Lemke does not always reach 1e-9 against them.
-  lcp::SolverSettings lcp = {.tolerance = 1e-8};
+  lcp::SolverSettings lcp = {.tolerance = 1e-8, .quick_certificate = true};
   /// Starts the velocity problem from the impulses of the step before (contact_memory.h), for
   /// solvers that use a warm start.
   bool warm_start = true;

@@ -538,6 +538,76 @@ TEST(Judge, HasACeilingForTheFloor) {
   EXPECT_EQ(judge(c, kTolerance, Status::kStalled), Status::kSolvedToRounding);
 }
 
+/// Two bodies, one cone between them and one on the ground, an LCP row.
+Problem two_bodies(std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  FactoredMatrix A;
+  A.mass.add_inverse(Matrix::Identity(6, 6));
+  A.mass.add_inverse(0.1 * Matrix::Identity(6, 6));
+  const auto add = [&](bool first, bool second) {
+    A.add_row();
+    for (int body = 0; body < 2; ++body) {
+      if (body == 0 ? first : second) {
+        Vector values(6);
+        for (double& value : values) value = normal(random);
+        A.add_entry(body, values);
+      }
+    }
+  };
+  for (int k = 0; k < 3; ++k) add(true, true);
+  for (int k = 0; k < 3; ++k) add(false, true);
+  add(true, false);
+  Problem problem;
+  problem.M = A;
+  problem.cones = {{0, 3, 0.5}, {3, 3, 0.8}};
+  return problem;
+}
+
+TEST(QuickCertificate, GivesTheSameVerdictAndNoSmallerNumbers) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  Certifier certifier;
+  int quick_ones = 0;
+  for (int k = 0; k < 200; ++k) {
+    SCOPED_TRACE(k);
+    Problem problem = two_bodies(random);
+    Vector z{{1.0, 0.2, -0.1, 2.0, 0.5, 0.5, 0.7}};
+    if (k % 3 == 1) z.segment(3, 3).setZero();
+    Vector w(7);
+    multiply(problem.M, z.data(), w.data());
+    // From exact to hopeless: w = 0 but for an error of 10^-12 .. 1.
+    const double error = std::pow(10.0, -12.0 + k % 13);
+    problem.q = -w;
+    for (double& q : problem.q) q += error * normal(random);
+    if (k % 3 == 1) problem.q[3] += 1.0;  // separates
+    Vector w_quick, w_full;
+    const Certificate quick = certifier.certify_quickly(problem, z, kTolerance, &w_quick);
+    const Certificate full = certify(problem, z, &w_full);
+    EXPECT_EQ(judge(quick, kTolerance, Status::kStalled),
+              judge(full, kTolerance, Status::kStalled));
+    EXPECT_EQ(w_quick, w_full);
+    EXPECT_GE(quick.unit_free_residual, full.unit_free_residual * (1.0 - 1e-12));
+    EXPECT_GE(quick.natural_residual, full.natural_residual * (1.0 - 1e-12));
+    EXPECT_GE(quick.rounding_floor, full.rounding_floor * (1.0 - 1e-12));
+    EXPECT_EQ(quick.min_z, full.min_z);
+    EXPECT_EQ(quick.min_w, full.min_w);
+    EXPECT_NEAR(quick.complementarity, full.complementarity, 1e-14 * full.complementarity + 1e-18);
+    EXPECT_EQ(quick.cone_violation, full.cone_violation);
+    quick_ones += std::isnan(quick.backward_error) ? 1 : 0;
+  }
+  EXPECT_GT(quick_ones, 20);
+  EXPECT_LT(quick_ones, 180);
+  // q = 0, a z that is not finite, a given M: as certify().
+  Problem problem = two_bodies(random);
+  problem.q.setZero(7);
+  EXPECT_EQ(certifier.certify_quickly(problem, Vector::Zero(7), kTolerance).unit_free_residual,
+            0.0);
+  problem.q.setOnes();
+  EXPECT_EQ(certifier.certify_quickly(problem, Vector::Constant(7, std::nan("")), kTolerance)
+                .unit_free_residual,
+            kInfinity);
+}
+
 // A floor of 1e-4 is double's; computed in long double, the residual may be 1e-7 too small.
 TEST(Judge, TrustsNoResidualBeyondWhatItsOwnRoundingLeaves) {
   Certificate c;

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <signorini/core/model/body.h>
+#include <signorini/core/response/time_stepper.h>
+
+#include "bench/stack_scenes.h"
+
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace signorini::bench {
+
+/// An engine that plays a scene.
+class ScenePlayer {
+ public:
+  virtual ~ScenePlayer() = default;
+  /// One step of the scene's length, collision detection included.
+  virtual void step() = 0;
+  /// Positions and orientations now, one a body; momenta are left out.
+  [[nodiscard]] virtual State poses() const = 0;
+  /// The worst residual of the contact problems so far in m/s, or NaN where the engine knows none.
+  [[nodiscard]] virtual double worst_residual() const = 0;
+  /// Steps of which a contact problem was not solved (engines that do not say: 0).
+  [[nodiscard]] virtual int unsolved_steps() const = 0;
+};
+
+struct Contestant {
+  std::string name;
+  std::function<std::unique_ptr<ScenePlayer>(const SteppedScene& scene)> start;
+  bool is_ours = true;
+};
+
+/// Our time stepper with these settings but for the step.
+[[nodiscard]] Contestant our_stepper(const std::string& name, const TimeStepSettings& settings);
+/// Bullet in double precision: its defaults, sleeping off, with this many iterations of its
+/// sequential impulses.
+[[nodiscard]] Contestant bullet_stepper(int iterations);
+
+}  // namespace signorini::bench

@@ -1,0 +1,84 @@
+#include "bench/stack_scenes.h"
+
+#include <cmath>
+#include <fmt/format.h>
+
+namespace signorini::bench {
+namespace {
+
+constexpr Material kSurface{.friction = 0.5, .restitution = 0.0};
+
+void add_box(const Vec3& half, double mass, const Vec3& position, BodyKind kind,
+             SteppedScene& scene) {
+  const int index = static_cast<int>(scene.bodies.size());
+  const Vec3 square = half.cwiseProduct(half);
+  Body body;
+  body.kind = kind;
+  body.mass = mass;
+  body.inertia =
+      Vec3(square.y() + square.z(), square.x() + square.z(), square.x() + square.y()).asDiagonal();
+  body.inertia *= mass / 3.0;
+  body.name = index == 0 ? "ground" : fmt::format("box {}", index);
+  BodyState state;
+  state.x = position;
+  scene.colliders.push_back({.body = index,
+                             .shape = collision::Box{half},
+                             .local = {},
+                             .material = kSurface,
+                             .name = body.name});
+  scene.bodies.push_back(std::move(body));
+  scene.state.push_back(state);
+}
+
+SteppedScene ground(const std::string& name, double step, double seconds) {
+  SteppedScene scene;
+  scene.name = name;
+  scene.step = step;
+  scene.seconds = seconds;
+  add_box(Vec3::Constant(kGroundHalfEdge), 1.0, Vec3(0.0, 0.0, -kGroundHalfEdge), BodyKind::kFixed,
+          scene);
+  return scene;
+}
+
+void add_cube(double mass, const Vec3& position, SteppedScene& scene) {
+  add_box(Vec3::Constant(0.5), mass, position, BodyKind::kDynamic, scene);
+  scene.watched = static_cast<int>(scene.bodies.size()) - 1;
+}
+
+std::string step_text(double step) {
+  return fmt::format("1/{:.0f} s", 1.0 / step);
+}
+
+}  // namespace
+
+SteppedScene stack_scene(int count, double step, double seconds) {
+  SteppedScene scene =
+      ground(fmt::format("stack of {}, {}", count, step_text(step)), step, seconds);
+  for (int i = 0; i < count; ++i) {
+    add_cube(1.0, Vec3(0.0, 0.0, 0.5 + i), scene);
+  }
+  return scene;
+}
+
+SteppedScene pyramid_scene(int rows, double step, double seconds) {
+  constexpr double kSpacing = 1.1;
+  SteppedScene scene =
+      ground(fmt::format("pyramid of {} rows, {}", rows, step_text(step)), step, seconds);
+  for (int row = 0; row < rows; ++row) {
+    const int count = rows - row;
+    for (int i = 0; i < count; ++i) {
+      add_cube(1.0, Vec3(kSpacing * (i - 0.5 * (count - 1)), 0.0, 0.5 + row), scene);
+    }
+  }
+  return scene;
+}
+
+SteppedScene heavy_scene(double mass, double step, double seconds) {
+  SteppedScene scene =
+      ground(fmt::format("1 kg under {:.0e} kg, {}", mass, step_text(step)), step, seconds);
+  add_cube(1.0, Vec3(0.0, 0.0, 0.5), scene);
+  add_cube(mass, Vec3(0.0, 0.0, 1.5), scene);
+  return scene;
+}
+
+}  // namespace signorini::bench

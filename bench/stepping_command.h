@@ -1,0 +1,24 @@
+#pragma once
+
+#include <CLI/App.hpp>
+#include <memory>
+
+namespace signorini::bench {
+
+/// The studies of stepping: `signorini-bench stacks`.
+class SteppingCommand {
+ public:
+  explicit SteppingCommand(CLI::App& app);
+  ~SteppingCommand();
+  [[nodiscard]] bool is_asked() const;
+  /// @return the exit code: 0, or 1 if a step of ours was not solved.
+  /// @throws std::exception for what cannot be run or written.
+  [[nodiscard]] int run() const;
+
+ private:
+  struct Options;
+  std::unique_ptr<Options> options_;
+  CLI::App* stacks_;
+};
+
+}  // namespace signorini::bench
