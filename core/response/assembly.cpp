@@ -12,14 +12,21 @@ using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
 /// -1 for bodies without a row, 0 for the others.
-std::vector<int> bodies_with_rows(const Bodies& bodies, const ContactSet& contacts) {
+std::vector<int> bodies_with_rows(const Bodies& bodies, const ContactSet& contacts,
+                                  const BodyPairs& joined) {
   std::vector<int> has_row(bodies.size(), -1);
-  for (const Contact& contact : contacts) {
-    for (const int body : {contact.body_a, contact.body_b}) {
-      if (bodies[body].is_dynamic()) {
-        has_row[body] = 0;
-      }
+  const auto mark = [&](int body) {
+    if (bodies[body].is_dynamic()) {
+      has_row[body] = 0;
     }
+  };
+  for (const Contact& contact : contacts) {
+    mark(contact.body_a);
+    mark(contact.body_b);
+  }
+  for (const auto& [a, b] : joined) {
+    mark(a);
+    mark(b);
   }
   return has_row;
 }
@@ -70,10 +77,10 @@ void check_dynamic(const Bodies& bodies, const ContactSet& contacts) {
 }
 
 void start_rows(const Bodies& bodies, const State& state, const ContactSet& contacts,
-                NormalRows& rows) {
+                NormalRows& rows, const BodyPairs& joined) {
   check_dynamic(bodies, contacts);
   rows.A.clear();
-  rows.block_of_body = bodies_with_rows(bodies, contacts);
+  rows.block_of_body = bodies_with_rows(bodies, contacts, joined);
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     if (rows.block_of_body[k] == 0) {
       rows.block_of_body[k] = rows.A.mass.add_inverse(inverse_mass_block(bodies[k], state[k]));
@@ -96,8 +103,8 @@ void add_row(const State& state, const Contact& contact, const Vec3& direction, 
 }
 
 void assemble_normals(const Bodies& bodies, const State& state, const ContactSet& contacts,
-                      NormalRows& rows) {
-  start_rows(bodies, state, contacts, rows);
+                      NormalRows& rows, const BodyPairs& joined) {
+  start_rows(bodies, state, contacts, rows, joined);
   for (const Contact& contact : contacts) {
     add_row(state, contact, contact.normal, contact.point_a, contact.point_b, rows);
   }
@@ -117,27 +124,39 @@ void apply_impulses(const Bodies& bodies, const ContactSet& contacts, const lcp:
   }
 }
 
+BodyPairs body_pairs(const ContactSet& contacts) {
+  BodyPairs pairs;
+  pairs.reserve(contacts.size());
+  for (const Contact& contact : contacts) {
+    pairs.emplace_back(contact.body_a, contact.body_b);
+  }
+  return pairs;
+}
+
 std::vector<int> connected_sets(const Bodies& bodies, const ContactSet& contacts) {
+  return linked_sets(bodies, body_pairs(contacts));
+}
+
+std::vector<int> linked_sets(const Bodies& bodies, const BodyPairs& links) {
   std::vector<int> parent(bodies.size());
   std::iota(parent.begin(), parent.end(), 0);
-  for (const Contact& contact : contacts) {
-    if (bodies[contact.body_a].is_dynamic() && bodies[contact.body_b].is_dynamic()) {
-      parent[find_root(parent, contact.body_a)] = find_root(parent, contact.body_b);
+  for (const auto& [a, b] : links) {
+    if (bodies[a].is_dynamic() && bodies[b].is_dynamic()) {
+      parent[find_root(parent, a)] = find_root(parent, b);
     }
   }
   std::vector<int> number_of_root(bodies.size(), -1);
-  std::vector<int> set_of_contact;
-  set_of_contact.reserve(contacts.size());
+  std::vector<int> set_of_link;
+  set_of_link.reserve(links.size());
   int sets = 0;
-  for (const Contact& contact : contacts) {
-    const int body = bodies[contact.body_a].is_dynamic() ? contact.body_a : contact.body_b;
-    int& number = number_of_root[find_root(parent, body)];
+  for (const auto& [a, b] : links) {
+    int& number = number_of_root[find_root(parent, bodies[a].is_dynamic() ? a : b)];
     if (number < 0) {
       number = sets++;
     }
-    set_of_contact.push_back(number);
+    set_of_link.push_back(number);
   }
-  return set_of_contact;
+  return set_of_link;
 }
 
 }  // namespace signorini

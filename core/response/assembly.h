@@ -4,9 +4,13 @@
 #include <signorini/core/model/contact.h>
 #include <signorini/lcp/factored_matrix.h>
 
+#include <utility>
 #include <vector>
 
 namespace signorini {
+
+/// Two bodies each: what connects bodies, contact or joint.
+using BodyPairs = std::vector<std::pair<int, int>>;
 
 /// The normal rows of a contact set: d'+ = A f + d'-, A = J M^-1 J^T with row i of J
 /// [N, r_A x N, -N, -(r_B x N)] over the dynamic bodies (r_A = P_A - x_A, r_B = P_B - x_B).
@@ -26,10 +30,11 @@ struct NormalRows {
 /// @throws std::invalid_argument naming the contact if neither of its bodies is dynamic.
 void check_dynamic(const Bodies& bodies, const ContactSet& contacts);
 
-/// Forgets what rows held and adds a block of 6 for every dynamic body of the contacts; no rows.
+/// Forgets what rows held and adds a block of 6 for every dynamic body of the contacts and of the
+/// pairs `joined`; no rows.
 /// @throws std::invalid_argument as check_dynamic(); rows is then untouched.
 void start_rows(const Bodies& bodies, const State& state, const ContactSet& contacts,
-                NormalRows& rows);
+                NormalRows& rows, const BodyPairs& joined = {});
 /// Adds the row [t, r_A x t, -t, -(r_B x t)] of one contact, r_A = point_a - x_A, to A.
 /// @param direction t, unit. d_dot is left alone
 void add_row(const State& state, const Contact& contact, const Vec3& direction, const Vec3& point_a,
@@ -37,10 +42,11 @@ void add_row(const State& state, const Contact& contact, const Vec3& direction, 
 
 /// Assembles the rows of all contacts. Cost: O(bodies + contacts).
 /// @param bodies, state, contacts valid: see validate() of each
+/// @param joined as start_rows()
 /// @throws std::invalid_argument if a contact joins two bodies of which neither is dynamic; rows is
 /// then untouched.
 void assemble_normals(const Bodies& bodies, const State& state, const ContactSet& contacts,
-                      NormalRows& rows);
+                      NormalRows& rows, const BodyPairs& joined = {});
 
 /// d'+ = A f + d'-, in m/s, for f in N s (with d'' and N: the same).
 [[nodiscard]] lcp::Vector gap_velocities_after(const NormalRows& rows, const lcp::VectorRef& f);
@@ -52,5 +58,10 @@ void apply_impulses(const Bodies& bodies, const ContactSet& contacts, const lcp:
 /// The connected sets of contacts: two contacts belong together if they share a dynamic body.
 /// @return the set's number of each contact, numbered in the order of their first contact.
 [[nodiscard]] std::vector<int> connected_sets(const Bodies& bodies, const ContactSet& contacts);
+/// The same of any links between bodies, each with a dynamic body.
+[[nodiscard]] std::vector<int> linked_sets(const Bodies& bodies, const BodyPairs& links);
+
+/// The two bodies of every contact.
+[[nodiscard]] BodyPairs body_pairs(const ContactSet& contacts);
 
 }  // namespace signorini

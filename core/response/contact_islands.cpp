@@ -6,12 +6,17 @@
 namespace signorini {
 namespace {
 
-/// Fills all but the members. @param local of every body of the scene: scratch
+/// Fills all but the members and the joints, which it renumbers. @param local of every body of the
+/// scene: scratch
 void fill(const Bodies& bodies, const State& state, const ContactSet& contacts,
           const lcp::VectorRef& allowance, std::vector<int>& local, ContactIsland& island) {
   for (const int i : island.members) {
     island.body.push_back(contacts[i].body_a);
     island.body.push_back(contacts[i].body_b);
+  }
+  for (const JointRow& row : island.joints) {
+    island.body.push_back(row.body_a);
+    island.body.push_back(row.body_b);
   }
   std::sort(island.body.begin(), island.body.end());
   island.body.erase(std::unique(island.body.begin(), island.body.end()), island.body.end());
@@ -29,20 +34,33 @@ void fill(const Bodies& bodies, const State& state, const ContactSet& contacts,
     island.contacts.push_back(contact);
     island.allowance[static_cast<lcp::Index>(j)] = allowance[island.members[j]];
   }
+  for (JointRow& row : island.joints) {
+    row.body_a = local[row.body_a];
+    row.body_b = local[row.body_b];
+  }
 }
 
 }  // namespace
 
 std::vector<ContactIsland> contact_islands(const Bodies& bodies, const State& state,
                                            const ContactSet& contacts,
-                                           const lcp::VectorRef& allowance) {
-  const std::vector<int> set_of_contact = connected_sets(bodies, contacts);
+                                           const lcp::VectorRef& allowance,
+                                           const std::vector<JointRow>& joints) {
+  BodyPairs links = body_pairs(contacts);
+  const BodyPairs joined = body_pairs(joints);
+  links.insert(links.end(), joined.begin(), joined.end());
+  const std::vector<int> set_of_link = linked_sets(bodies, links);
   std::vector<ContactIsland> islands;
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    if (set_of_contact[i] == static_cast<int>(islands.size())) {
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    if (set_of_link[i] == static_cast<int>(islands.size())) {
       islands.emplace_back();
     }
-    islands[set_of_contact[i]].members.push_back(static_cast<int>(i));
+    ContactIsland& island = islands[set_of_link[i]];
+    if (i < contacts.size()) {
+      island.members.push_back(static_cast<int>(i));
+    } else {
+      island.joints.push_back(joints[i - contacts.size()]);
+    }
   }
   std::vector<int> local(bodies.size(), -1);
   for (ContactIsland& island : islands) {

@@ -7,14 +7,15 @@
 namespace signorini {
 
 void assemble_cones(const Bodies& bodies, const State& free_state, const ContactSet& contacts,
-                    const lcp::VectorRef& allowance, ConeProblem& out) {
+                    const lcp::VectorRef& allowance, ConeProblem& out,
+                    std::span<const JointRow> joints) {
   if (allowance.size() != static_cast<lcp::Index>(contacts.size())) {
     throw std::invalid_argument("allowance: must have one number a contact (" +
                                 std::to_string(contacts.size()) + "), got " +
                                 std::to_string(allowance.size()));
   }
   NormalRows rows;
-  start_rows(bodies, free_state, contacts, rows);
+  start_rows(bodies, free_state, contacts, rows, body_pairs(joints));
   ConeProblem fresh;
   std::vector<double> q;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -37,7 +38,10 @@ void assemble_cones(const Bodies& bodies, const State& free_state, const Contact
                                      .coefficient = contact.material.friction});
     }
   }
+  add_joint_rows(joints, rows);
+  q.resize(q.size() + joints.size());
   fresh.problem.q = Eigen::Map<const lcp::Vector>(q.data(), static_cast<lcp::Index>(q.size()));
+  set_joint_bounds(joint_velocities(bodies, free_state, joints), joints, fresh.problem);
   fresh.problem.M = std::move(rows.A);
   out = std::move(fresh);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <signorini/core/response/joint_rows.h>
 #include <signorini/core/response/tangent_rows.h>
 #include <signorini/lcp/problem.h>
 
@@ -15,7 +16,8 @@ namespace signorini {
 ///     f_i ⊥ w_N >= 0,   |beta_i| <= mu_i f_i,   beta_i = -mu_i f_i u_T+/|u_T+| where it slides
 ///
 /// u* the velocities without contact impulses; friction acts at friction_point(). Without friction
-/// it is the frictionless LCP. M is left factored.
+/// it is the frictionless LCP. M is left factored. Rows of joints
+/// (joint_rows.h) follow after those of all contacts, with their bounds.
 struct ConeProblem {
   lcp::Problem problem;
   std::vector<int> normal_row;       ///< of each contact
@@ -31,10 +33,12 @@ struct ConeProblem {
 /// @param free_state positions of the step's start, momenta without contact impulses; its slip
 /// chooses the frames
 /// @param allowance one a contact, m/s: how fast the gap may close, or, negative, must open
+/// @param joints rows with these bodies' numbers
 /// @throws std::invalid_argument if neither body of a contact is dynamic or an allowance is
 /// missing; out is then untouched.
 void assemble_cones(const Bodies& bodies, const State& free_state, const ContactSet& contacts,
-                    const lcp::VectorRef& allowance, ConeProblem& out);
+                    const lcp::VectorRef& allowance, ConeProblem& out,
+                    std::span<const JointRow> joints = {});
 
 /// f of every contact, N s.
 [[nodiscard]] lcp::Vector normal_impulses(const ConeProblem& cones, const lcp::VectorRef& z);

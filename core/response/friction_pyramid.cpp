@@ -21,17 +21,17 @@ std::vector<Eigen::Vector2d> pyramid_directions(int sides) {
   return directions;
 }
 
-// Where a row of A over [normals; t1, t2 of each frictional contact] goes in z: itself for a
-// normal, the k directions with their cosines or sines for a tangent.
+// Where a row of A over [normals; t1, t2 of each frictional contact; joints] goes in z: itself for
+// a normal, the k directions with their cosines or sines for a tangent, behind lambda for a joint.
 struct Target {
   int row;
   double factor;
 };
 
-std::vector<std::vector<Target>> expansion(int normals, int frictional,
+std::vector<std::vector<Target>> expansion(int normals, int frictional, int joints,
                                            const std::vector<Eigen::Vector2d>& directions) {
   const int sides = static_cast<int>(directions.size());
-  std::vector<std::vector<Target>> targets(normals + 2 * frictional);
+  std::vector<std::vector<Target>> targets(normals + 2 * frictional + joints);
   for (int i = 0; i < normals; ++i) {
     targets[i].push_back({i, 1.0});
   }
@@ -44,6 +44,9 @@ std::vector<std::vector<Target>> expansion(int normals, int frictional,
       }
     }
   }
+  for (int j = 0; j < joints; ++j) {
+    targets[normals + 2 * frictional + j].push_back({normals + (sides + 1) * frictional + j, 1.0});
+  }
   return targets;
 }
 
@@ -54,7 +57,8 @@ lcp::SparseMatrix expand(const lcp::SparseMatrix& A, const ContactSet& contacts,
   const int normals = static_cast<int>(contacts.size());
   const int m = static_cast<int>(frictional.size());
   const int sides = static_cast<int>(directions.size());
-  const auto targets = expansion(normals, m, directions);
+  const int joints = static_cast<int>(A.rows()) - normals - 2 * m;
+  const auto targets = expansion(normals, m, joints, directions);
   std::vector<Eigen::Triplet<double>> entries;
   for (int column = 0; column < A.outerSize(); ++column) {
     for (lcp::SparseMatrix::InnerIterator it(A, column); it; ++it) {
@@ -77,7 +81,7 @@ lcp::SparseMatrix expand(const lcp::SparseMatrix& A, const ContactSet& contacts,
       entries.emplace_back(beta, lambda, 1.0);
     }
   }
-  const int size = normals + (sides + 1) * m;
+  const int size = normals + (sides + 1) * m + joints;
   lcp::SparseMatrix M(size, size);
   M.setFromTriplets(entries.begin(), entries.end());
   return M;
@@ -97,10 +101,11 @@ void check_arguments(const ContactSet& contacts, const lcp::VectorRef& allowance
 }  // namespace
 
 void assemble_pyramid(const Bodies& bodies, const State& free_state, const ContactSet& contacts,
-                      const lcp::VectorRef& allowance, int sides, PyramidProblem& out) {
+                      const lcp::VectorRef& allowance, int sides, PyramidProblem& out,
+                      std::span<const JointRow> joints) {
   check_arguments(contacts, allowance, sides);
   NormalRows rows;
-  assemble_normals(bodies, free_state, contacts, rows);
+  assemble_normals(bodies, free_state, contacts, rows, body_pairs(joints));
   const int normals = static_cast<int>(contacts.size());
   out.sides = sides;
   out.frictional.clear();
@@ -118,9 +123,13 @@ void assemble_pyramid(const Bodies& bodies, const State& free_state, const Conta
     }
   }
 
+  add_joint_rows(joints, rows);
+
   const int m = static_cast<int>(out.frictional.size());
   out.problem = {};
-  out.problem.q = lcp::Vector::Zero(m == 0 ? normals : normals + (sides + 1) * m);
+  out.problem.q =
+      lcp::Vector::Zero(normals + (sides + 1) * m + static_cast<lcp::Index>(joints.size()));
+  set_joint_bounds(joint_velocities(bodies, free_state, joints), joints, out.problem);
   out.problem.q.head(normals) = rows.d_dot + allowance;
   if (m == 0) {
     out.problem.M = std::move(rows.A);

@@ -2,6 +2,7 @@
 
 #include <signorini/core/model/body.h>
 #include <signorini/core/model/contact.h>
+#include <signorini/core/response/joint_rows.h>
 #include <signorini/core/response/tangent_rows.h>
 #include <signorini/lcp/problem.h>
 
@@ -27,7 +28,8 @@ namespace signorini {
 /// last rows carry S = diag(A_nn) (Stewart and Trinkle: 1), so that the certificate's unit-free
 /// residual judges every row, whatever the masses are. With S = 1 M is copositive, z^T M z =
 /// |J^T (f, beta)|^2_W + lambda^T mu f; S scales rows and changes no solution. Without friction z =
-/// f and M is left factored, symmetric positive semidefinite.
+/// f and M is left factored, symmetric positive semidefinite. Rows of joints (joint_rows.h) follow
+/// after all these, in A beside the normals: a mixed problem with their bounds.
 struct PyramidProblem {
   lcp::Problem problem;
   std::vector<int> frictional;       ///< the m contacts with mu > 0, ascending
@@ -40,10 +42,12 @@ struct PyramidProblem {
 /// @param allowance one a contact, m/s: how fast the gap may close (gap/h), or, negative, how fast
 /// it must open
 /// @param sides k, even, >= 4
+/// @param joints rows with these bodies' numbers
 /// @throws std::invalid_argument if neither body of a contact is dynamic, an allowance is missing,
 /// or `sides` is odd or less than 4; out is then untouched.
 void assemble_pyramid(const Bodies& bodies, const State& free_state, const ContactSet& contacts,
-                      const lcp::VectorRef& allowance, int sides, PyramidProblem& out);
+                      const lcp::VectorRef& allowance, int sides, PyramidProblem& out,
+                      std::span<const JointRow> joints = {});
 
 /// The impulse of every contact on its body A, world axes, N s: f N + sum_j beta_j t_j.
 [[nodiscard]] std::vector<Vec3> contact_impulses(const PyramidProblem& pyramid,

@@ -2,6 +2,7 @@
 
 #include <signorini/core/model/body.h>
 #include <signorini/core/model/contact.h>
+#include <signorini/core/model/joint.h>
 #include <signorini/lcp/solver.h>
 #include <signorini/lcp/status.h>
 
@@ -17,11 +18,23 @@ struct ProjectionReport {
   /// from turning J with L fixed. J.
   double energy_change = 0.0;
   double largest_displacement = 0.0;  ///< of a centre of mass, m
+  int passes = 0;                     ///< problems solved
   std::string detail;                 ///< why it failed, one line; else empty
 };
 
 /// Overlaps up to this are left alone, m.
 inline constexpr double kToleratedOverlap = 1e-10;
+
+/// Joints that hold to this are left alone, and passes end there; m or rad.
+inline constexpr double kToleratedJointError = 1e-10;
+
+/// Of a projection with joints, at most; each squares a joint's error once that is small.
+inline constexpr int kProjectionPasses = 20;
+
+/// Compliance of joint rows in a projection, in units of their A_ii: rows that depend on each other
+/// (closed loops) contradict each other by the second order of their errors, and are then met in
+/// the sense of least squares. A pass leaves this part of an error where none depends on another.
+inline constexpr double kProjectionCompliance = 1e-12;
 
 /// Moves bodies out of overlap by the smallest displacement in the metric of the masses:
 ///
@@ -31,12 +44,21 @@ inline constexpr double kToleratedOverlap = 1e-10;
 /// curvature leaves is of second order in D and is seen by the next call. Gaps > 0 among the
 /// contacts are kept from closing further than to zero. Only x and q change: p and L (world axes)
 /// are the same bits, so no velocity of translation is added and both momenta are conserved; w =
-/// J^-1 L follows the new orientation. Does nothing if no contact is deeper than kToleratedOverlap.
+/// J^-1 L follows the new orientation. Does nothing if no contact is deeper than kToleratedOverlap
+/// and no joint farther off than kToleratedJointError.
+///
+/// With joints: also C + J D = 0 for their equalities and C + J D >= 0 for their limits
+/// (joint_rows.h), softened by kProjectionCompliance; while a joint is off, again from where the
+/// bodies are then (gaps: N.(P_A - P_B) of the points carried along), up to kProjectionPasses. A
+/// pass makes half, a quarter .. of D where all of it brings no joint closer, D then in the metric
+/// of joint_stiffness.h for the forces l.
 ///
 /// @param gravity for energy_change, m/s^2
-/// @param solver takes a factored symmetric LCP; l in kg m
+/// @param solver takes a factored symmetric LCP, with free rows if there are joints; l in kg m
+/// @param metric the bodies whose masses measure D, if others than `bodies`
 /// @throws std::invalid_argument as assemble_normals() and Solver::solve(); state is then unchanged
 void project_positions(const Bodies& bodies, const ContactSet& contacts, const Vec3& gravity,
-                       lcp::Solver& solver, State& state, ProjectionReport& report);
+                       lcp::Solver& solver, State& state, ProjectionReport& report,
+                       const Joints& joints = {}, const Bodies* metric = nullptr);
 
 }  // namespace signorini

@@ -14,8 +14,9 @@ std::string to_text(const StepReport& report) {
   for (std::size_t k = 0; k < report.islands.size(); ++k) {
     const IslandReport& island = report.islands[k];
     text += "island " + count(k) + ": " + std::to_string(island.bodies) + " bodies, " +
-            std::to_string(island.contacts) + " contacts, " + std::to_string(island.rows) +
-            " rows, " + island.model + ", " + island.solver + ": " +
+            std::to_string(island.contacts) + " contacts, " +
+            (island.joint_rows > 0 ? std::to_string(island.joint_rows) + " joint rows, " : "") +
+            std::to_string(island.rows) + " rows, " + island.model + ", " + island.solver + ": " +
             std::string(lcp::to_string(island.status)) + ", residual " +
             number_text(island.unit_free_residual) + "\n";
   }

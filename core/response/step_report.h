@@ -1,6 +1,7 @@
 #pragma once
 
 #include <signorini/core/model/contact.h>
+#include <signorini/core/response/joint_rows.h>
 #include <signorini/lcp/result.h>
 
 #include <limits>
@@ -11,10 +12,11 @@ namespace signorini {
 
 /// What was solved for one island of a step.
 struct IslandReport {
-  int bodies = 0;     ///< dynamic
-  int contacts = 0;   ///< rows of normals
-  int rows = 0;       ///< of the problem
-  std::string model;  ///< "frictionless", or the friction model; "single contact, " before it
+  int bodies = 0;      ///< dynamic
+  int contacts = 0;    ///< rows of normals
+  int joint_rows = 0;  ///< those of joints
+  int rows = 0;        ///< of the problem
+  std::string model;   ///< "frictionless", or the friction model; "single contact, " before it
   std::string solver;
   lcp::Status status = lcp::Status::kNotRun;
   double unit_free_residual = std::numeric_limits<double>::quiet_NaN();
@@ -30,6 +32,9 @@ struct StepReport {
   std::vector<Vec3> impulses;         ///< whole contact impulses on A, world, N s
   std::vector<int> island_of;         ///< of each of `contacts`, into `islands`
   std::vector<IslandReport> islands;  ///< solved apart, in the order of their first contact
+  std::vector<JointReport> joints;    ///< one a joint of the stepper
+  int joint_rows = 0;                 ///< of all joints
+  int stiffened_bodies = 0;           ///< links under a heavy load: joint_stiffness.h
   int rows = 0;                       ///< of all islands
   /// Contacts found but left out of the problem: apart, with restitution, and approaching fast.
   int contacts_left_out = 0;

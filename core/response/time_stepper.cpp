@@ -1,6 +1,7 @@
 #include <signorini/core/model/contact_kinematics.h>
 #include <signorini/core/model/number_text.h>
 #include <signorini/core/response/assembly.h>
+#include <signorini/core/response/joint_stiffness.h>
 #include <signorini/core/response/position_projection.h>
 #include <signorini/core/response/set_impact.h>
 #include <signorini/core/response/time_stepper.h>
@@ -97,6 +98,18 @@ void keep_worse(lcp::Result&& result, lcp::Result& kept) {
   kept.statistics.solve_seconds = before + seconds;
 }
 
+/// The pairs of bodies that joints keep from colliding, smaller number first, sorted.
+BodyPairs never_colliding(const Joints& joints) {
+  BodyPairs pairs;
+  for (const Joint& joint : joints) {
+    if (!joint.bodies_collide) {
+      pairs.emplace_back(std::minmax(joint.body_a, joint.body_b));
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
 int dynamic_bodies(const Bodies& bodies) {
   return static_cast<int>(std::count_if(bodies.begin(), bodies.end(),
                                         [](const Body& body) { return body.is_dynamic(); }));
@@ -110,12 +123,14 @@ std::string of_island(const StepReport& report) {
 
 IslandReport describe(const ContactIsland& island, const lcp::Problem& problem,
                       const lcp::Result& result, FrictionModel model) {
-  const bool friction = problem.size() > static_cast<lcp::Index>(island.contacts.size());
+  const std::size_t frictionless_rows = island.contacts.size() + island.joints.size();
+  const bool friction = problem.size() > static_cast<lcp::Index>(frictionless_rows);
   IslandReport report;
+  report.joint_rows = static_cast<int>(island.joints.size());
   report.bodies = dynamic_bodies(island.bodies);
   report.contacts = static_cast<int>(island.contacts.size());
   report.rows = static_cast<int>(problem.size());
-  report.model = (report.contacts == 1 ? "single contact, " : "") +
+  report.model = (report.contacts == 1 && report.joint_rows == 0 ? "single contact, " : "") +
                  std::string(friction ? to_string(model) : "frictionless");
   report.solver = result.solver;
   report.status = result.status;
@@ -138,14 +153,47 @@ void TimeStepSettings::validate() const {
   lcp.validate();
 }
 
-TimeStepper::TimeStepper(Bodies bodies, ContactFinder& finder, const TimeStepSettings& settings)
-    : bodies_(std::move(bodies)), finder_(finder), settings_(settings) {
+TimeStepper::TimeStepper(Bodies bodies, ContactFinder& finder, const TimeStepSettings& settings,
+                         Joints joints)
+    : bodies_(std::move(bodies)),
+      finder_(finder),
+      settings_(settings),
+      joints_(std::move(joints)),
+      joint_memory_(joints_.size()) {
   settings_.validate();
   for (const Body& body : bodies_) {
     validate(body);
   }
   solver_ = lcp::make_solver(settings_.solver, settings_.lcp);
+  validate(joints_, bodies_);
+  joined_ = never_colliding(joints_);
   cone_solver_ = lcp::make_solver(settings_.cone_solver, settings_.lcp);
+  joint_solver_ = lcp::make_solver(settings_.joint_solver, settings_.lcp);
+}
+
+void TimeStepper::set_motor(int joint, const JointMotor& motor) {
+  if (joint < 0 || joint >= static_cast<int>(joints_.size())) {
+    throw std::invalid_argument("joint: must be in [0, " + std::to_string(joints_.size()) +
+                                "), got " + std::to_string(joint));
+  }
+  Joints changed = joints_;
+  changed[joint].motor = motor;
+  validate(changed, bodies_);
+  joints_ = std::move(changed);
+}
+
+/// The bodies with the inertia that the step's problems have.
+Bodies TimeStepper::solved_bodies(const State& state, StepReport& report) const {
+  if (!settings_.joint_stiffness || joints_before_.empty()) {
+    return bodies_;
+  }
+  Bodies solved =
+      stiffened(bodies_, state, joints_, joints_before_, settings_.step, report.stiffened_bodies);
+  if (report.stiffened_bodies > 0) {
+    append(std::to_string(report.stiffened_bodies) + " links under a heavy load stiffened",
+           report.detail);
+  }
+  return solved;
 }
 
 State TimeStepper::with_forces_applied(const State& start) const {
@@ -161,11 +209,15 @@ State TimeStepper::with_forces_applied(const State& start) const {
 void TimeStepper::find(const State& state, ContactSet& contacts) {
   contacts.clear();
   finder_.find(state, settings_.margin, contacts);
+  std::erase_if(contacts, [&](const Contact& contact) {
+    const std::pair<int, int> bodies = std::minmax(contact.body_a, contact.body_b);
+    return std::binary_search(joined_.begin(), joined_.end(), bodies);
+  });
   validate(contacts, static_cast<int>(bodies_.size()));
 }
 
 void TimeStepper::solve(const VelocityProblem& velocity, const ContactSet& contacts,
-                        lcp::Result& result) {
+                        const std::vector<JointRow>& joints, lcp::Result& result) {
   const lcp::Problem& problem = velocity.problem();
   result = {};
   result.z = velocity.closed_form();
@@ -178,12 +230,18 @@ void TimeStepper::solve(const VelocityProblem& velocity, const ContactSet& conta
       return;
     }
   }
-  const bool warm = settings_.warm_start && velocity.recall(contacts, memory_, start_) > 0;
-  lcp::Solver& solver = problem.cones.empty() ? *solver_ : *cone_solver_;
+  const bool warm =
+      settings_.warm_start && (velocity.recall(contacts, memory_, start_) > 0 || !joints.empty());
+  if (warm) {
+    recall_joints(joints, joint_memory_, start_);
+  }
+  lcp::Solver& without_cones = joints.empty() ? *solver_ : *joint_solver_;
+  lcp::Solver& solver = problem.cones.empty() ? without_cones : *cone_solver_;
   solver.solve(problem, result, warm ? &start_ : nullptr);
 }
 
-void TimeStepper::solve_islands(const std::vector<ContactIsland>& islands, StepReport& report) {
+void TimeStepper::solve_islands(const std::vector<ContactIsland>& islands, const State& start,
+                                StepReport& report) {
   report.normal_impulses = lcp::Vector::Zero(static_cast<lcp::Index>(report.contacts.size()));
   report.impulses.assign(report.contacts.size(), Vec3::Zero());
   report.island_of.assign(report.contacts.size(), -1);
@@ -193,7 +251,7 @@ void TimeStepper::solve_islands(const std::vector<ContactIsland>& islands, StepR
   for (const ContactIsland& island : islands) {
     VelocityProblem velocity;
     velocity.assemble(settings_.friction_model, island.bodies, island.state, island.contacts,
-                      island.allowance, settings_.pyramid_sides);
+                      island.allowance, settings_.pyramid_sides, island.joints);
     ContactSet contacts;
     for (const int i : island.members) {
       contacts.push_back(report.contacts[i]);
@@ -201,12 +259,13 @@ void TimeStepper::solve_islands(const std::vector<ContactIsland>& islands, StepR
       report.tangents_left_out += report.contacts[i].material.friction > 0.0 ? 0 : 2;
     }
     lcp::Result result;
-    solve(velocity, contacts, result);
+    solve(velocity, contacts, island.joints, result);
     report.islands.push_back(
         describe(island, velocity.problem(), result, settings_.friction_model));
     report.rows += report.islands.back().rows;
+    report.joint_rows += report.islands.back().joint_rows;
     report.dynamic_bodies_without_rows -= report.islands.back().bodies;
-    collect(velocity, contacts, island.members, std::move(result), report);
+    collect(velocity, contacts, island, start, std::move(result), report);
   }
   next_memory_.sort();
   std::swap(memory_, next_memory_);
@@ -220,7 +279,7 @@ void TimeStepper::solve_islands(const std::vector<ContactIsland>& islands, StepR
 
 /// An island's solution, or its best iterate, into the report and the memory.
 void TimeStepper::collect(const VelocityProblem& velocity, const ContactSet& contacts,
-                          const std::vector<int>& members, lcp::Result&& result,
+                          const ContactIsland& island, const State& start, lcp::Result&& result,
                           StepReport& report) {
   const bool usable = result.z.allFinite();
   if (!lcp::is_solved(result.status)) {
@@ -234,10 +293,13 @@ void TimeStepper::collect(const VelocityProblem& velocity, const ContactSet& con
     velocity.remember(contacts, result.z, next_memory_);
     const lcp::Vector normals = velocity.normal_impulses(result.z);
     const std::vector<Vec3> impulses = velocity.impulses(contacts, result.z);
-    for (std::size_t j = 0; j < members.size(); ++j) {
-      report.normal_impulses[members[j]] = normals[static_cast<lcp::Index>(j)];
-      report.impulses[members[j]] = impulses[j];
+    for (std::size_t j = 0; j < island.members.size(); ++j) {
+      report.normal_impulses[island.members[j]] = normals[static_cast<lcp::Index>(j)];
+      report.impulses[island.members[j]] = impulses[j];
     }
+    const lcp::Vector joint_impulses = velocity.joint_impulses(result.z);
+    remember_joints(island.joints, joint_impulses, joint_memory_);
+    add_joint_impulses(joints_, start, island.joints, joint_impulses, report.joints);
   }
   keep_worse(std::move(result), report.result);
 }
@@ -248,6 +310,10 @@ void TimeStepper::move(const State& start, const ContactSet& contacts, State& st
   for (const Contact& contact : contacts) {
     in_contact[contact.body_a] = true;
     in_contact[contact.body_b] = true;
+  }
+  for (const Joint& joint : joints_) {
+    in_contact[joint.body_a] = true;
+    in_contact[joint.body_b] = true;
   }
   const Integrator in_rows = settings_.integrator == Integrator::kEnergyMomentum
                                  ? Integrator::kEnergyMomentum
@@ -265,7 +331,7 @@ void TimeStepper::move(const State& start, const ContactSet& contacts, State& st
   }
 }
 
-void TimeStepper::project(State& state, StepReport& report) {
+void TimeStepper::project(const Bodies& solved, State& state, StepReport& report) {
   ContactSet contacts;
   find(state, contacts);
   const lcp::Vector d_dot = gap_velocities(bodies_, state, contacts);
@@ -279,16 +345,23 @@ void TimeStepper::project(State& state, StepReport& report) {
     }
   }
   ProjectionReport projection;
-  project_positions(bodies_, chosen, settings_.gravity, *solver_, state, projection);
+  project_positions(bodies_, chosen, settings_.gravity, joints_.empty() ? *solver_ : *joint_solver_,
+                    state, projection, joints_, &solved);
   report.projection_status = projection.status;
   report.energy_change_projection = projection.energy_change;
   append(projection.detail, report.detail);
 }
 
 // The impulses on `state`, which has the free momenta.
-void TimeStepper::apply(State& state, StepReport& report) const {
+void TimeStepper::apply(const Bodies& solved, State& state, StepReport& report) const {
   const double before = kinetic_energy(bodies_, state);
   apply_contact_impulses(bodies_, report.contacts, report.impulses, state);
+  apply_joint_impulses(bodies_, joints_, report.joints, state);
+  if (report.stiffened_bodies > 0) {
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      set_velocity(bodies_[k], velocity(solved[k], state[k]), state[k]);
+    }
+  }
   report.energy_change_impact = kinetic_energy(bodies_, state) - before;
 }
 
@@ -310,10 +383,17 @@ void TimeStepper::step(State& state, StepReport& report) {
   }
 
   check_dynamic(bodies_, report.contacts);
-  solve_islands(contact_islands(bodies_, next, report.contacts, selection.allowance), report);
-  apply(next, report);
+  std::vector<JointRow> joined;
+  joint_rows(joints_, state, settings_.step, joined);
+  report.joints.resize(joints_.size());
+  const Bodies solved = solved_bodies(state, report);
+  solve_islands(contact_islands(solved, next, report.contacts, selection.allowance, joined), state,
+                report);
+  apply(solved, next, report);
+  joints_before_ = report.joints;
   move(state, report.contacts, next);
-  project(next, report);
+  project(solved, next, report);
+  measure_joints(joints_, next, report.joints);
   report.kinetic_energy = kinetic_energy(bodies_, next);
   report.potential_energy = potential_energy(bodies_, next, settings_.gravity);
   state = std::move(next);

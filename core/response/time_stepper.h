@@ -2,6 +2,7 @@
 
 #include <signorini/core/model/body.h>
 #include <signorini/core/model/contact_finder.h>
+#include <signorini/core/model/joint.h>
 #include <signorini/core/model/unconstrained_motion.h>
 #include <signorini/core/response/contact_islands.h>
 #include <signorini/core/response/contact_memory.h>
@@ -40,10 +41,16 @@ struct TimeStepSettings {
   /// cones, which most solvers cannot take.
   std::string solver = "lemke";
   std::string cone_solver = "auto";  ///< of the velocity problem with kCone
+  /// Of the velocity problem with joints but no cones, and of the projection with joints: takes
+  /// free rows, with kBox coupled limits too ("auto", "dantzig", "lemke", "alart-curnier", "pgs"
+  /// ..).
+  std::string joint_solver = "auto";
   /// A tolerance of 1e-8 leaves velocity errors of up to 1e-8 |q|, in a resting scene 1e-8 h g =
   /// 4e-10 m/s. Such errors come back in the q of the next step; with mass ratios of 1000 and more
   /// Lemke does not always reach 1e-9 against them.
   lcp::SolverSettings lcp = {.tolerance = 1e-8, .quick_certificate = true};
+  /// Keeps light links under a heavy load from whipping (joint_stiffness.h). Off: the plain scheme.
+  bool joint_stiffness = true;
   /// Starts the velocity problem from the impulses of the step before (contact_memory.h), for
   /// solvers that use a warm start.
   bool warm_start = true;
@@ -87,14 +94,20 @@ inline constexpr double kRestingSpeed = 1e-6;
 ///    kRestingSpeed and restitution_threshold: a ball that bounces leaves by itself, and lifting it
 ///    would give it energy.
 ///
-/// With e = 0 the impulses never add kinetic energy unless a body is driven: T+ - T* =
+/// Joints (joint.h) add the rows of joint_rows.h, free or with bounds, to the same problem in every
+/// friction model; islands are connected by them, and the projection closes what a step opened. A
+/// body that swings at w loses (w h)^2 of the kinetic energy that its centre of mass has, a step,
+/// as its velocity is turned into the new tangent by dropping what is across: first order in h.
+///
+/// With e = 0 the impulses never add kinetic energy unless a body or a motor is driven: T+ - T* =
 /// f.d'+ + beta.u_t+ - 1/2 |J^T (f, beta)|^2_W, and at a solution f.d'+ = -f.allowance <= 0,
 /// beta.u_t+ = -lambda mu f <= 0. With e > 0 in several contacts at once they can (Newton's law).
 class TimeStepper {
  public:
   /// @param finder is asked for contacts, twice a step; must outlive the stepper
-  /// @throws std::invalid_argument for bad bodies or settings
-  TimeStepper(Bodies bodies, ContactFinder& finder, const TimeStepSettings& settings);
+  /// @throws std::invalid_argument for bad bodies, settings or joints
+  TimeStepper(Bodies bodies, ContactFinder& finder, const TimeStepSettings& settings,
+              Joints joints = {});
 
   /// One step. If the velocity problem is not solved, the best iterate is applied and report.status
   /// says so: the caller decides whether to go on. A best iterate that is not finite is not applied
@@ -106,25 +119,38 @@ class TimeStepper {
 
   [[nodiscard]] const Bodies& bodies() const { return bodies_; }
   [[nodiscard]] const TimeStepSettings& settings() const { return settings_; }
+  [[nodiscard]] const Joints& joints() const { return joints_; }
+  /// Drives a joint otherwise from the next step on. @throws std::invalid_argument for a number out
+  /// of range and for a motor that validate() refuses; nothing is then changed
+  void set_motor(int joint, const JointMotor& motor);
 
  private:
+  [[nodiscard]] Bodies solved_bodies(const State& state, StepReport& report) const;
   [[nodiscard]] State with_forces_applied(const State& start) const;
   void find(const State& state, ContactSet& contacts);
-  void solve_islands(const std::vector<ContactIsland>& islands, StepReport& report);
-  void solve(const VelocityProblem& velocity, const ContactSet& contacts, lcp::Result& result);
+  void solve_islands(const std::vector<ContactIsland>& islands, const State& start,
+                     StepReport& report);
+  void solve(const VelocityProblem& velocity, const ContactSet& contacts,
+             const std::vector<JointRow>& joints, lcp::Result& result);
   void collect(const VelocityProblem& velocity, const ContactSet& contacts,
-               const std::vector<int>& members, lcp::Result&& result, StepReport& report);
-  void apply(State& state, StepReport& report) const;
+               const ContactIsland& island, const State& start, lcp::Result&& result,
+               StepReport& report);
+  void apply(const Bodies& solved, State& state, StepReport& report) const;
   void move(const State& start, const ContactSet& contacts, State& state) const;
-  void project(State& state, StepReport& report);
+  void project(const Bodies& solved, State& state, StepReport& report);
 
   Bodies bodies_;
   ContactFinder& finder_;
   TimeStepSettings settings_;
+  Joints joints_;
+  BodyPairs joined_;  // of the joints whose bodies do not collide: smaller first, sorted
   std::unique_ptr<lcp::Solver> solver_;
   std::unique_ptr<lcp::Solver> cone_solver_;
+  std::unique_ptr<lcp::Solver> joint_solver_;
   ContactMemory memory_;
   ContactMemory next_memory_;
+  JointMemory joint_memory_;
+  std::vector<JointReport> joints_before_;  // what they did in the last step
   lcp::Vector start_;
 };
 

@@ -39,16 +39,17 @@ std::string_view to_string(FrictionModel model) {
 
 void VelocityProblem::assemble(FrictionModel model, const Bodies& bodies, const State& free_state,
                                const ContactSet& contacts, const lcp::VectorRef& allowance,
-                               int sides) {
+                               int sides, std::span<const JointRow> joints) {
   contacts_ = static_cast<Eigen::Index>(contacts.size());
+  joints_ = static_cast<Eigen::Index>(joints.size());
   if (model == FrictionModel::kPyramid) {
     PyramidProblem pyramid;
-    assemble_pyramid(bodies, free_state, contacts, allowance, sides, pyramid);
+    assemble_pyramid(bodies, free_state, contacts, allowance, sides, pyramid, joints);
     form_ = std::move(pyramid);
     return;
   }
   ConeProblem cones;
-  assemble_cones(bodies, free_state, contacts, allowance, cones);
+  assemble_cones(bodies, free_state, contacts, allowance, cones, joints);
   if (model == FrictionModel::kBox) {
     make_box(cones);
   }
@@ -81,6 +82,9 @@ int VelocityProblem::recall(const ContactSet& contacts, const ContactMemory& mem
 
 lcp::Vector VelocityProblem::closed_form() const {
   const lcp::Problem& asked = problem();
+  if (joints_ > 0) {
+    return {};
+  }
   if (contacts_ == 1 && asked.size() == 1) {
     lcp::Vector A;
     lcp::diagonal(asked.M, A);

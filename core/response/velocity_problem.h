@@ -27,20 +27,26 @@ enum class FrictionModel : std::uint8_t {
 class VelocityProblem {
  public:
   /// @param sides of the pyramid; see assemble_pyramid() and assemble_cones()
+  /// @param joints rows with these bodies' numbers, behind all others in every model
   void assemble(FrictionModel model, const Bodies& bodies, const State& free_state,
-                const ContactSet& contacts, const lcp::VectorRef& allowance, int sides);
+                const ContactSet& contacts, const lcp::VectorRef& allowance, int sides,
+                std::span<const JointRow> joints = {});
 
   [[nodiscard]] const lcp::Problem& problem() const;
   /// f of every contact, N s.
   [[nodiscard]] lcp::Vector normal_impulses(const lcp::VectorRef& z) const;
+  /// z of the joint rows.
+  [[nodiscard]] lcp::Vector joint_impulses(const lcp::VectorRef& z) const {
+    return z.tail(joints_);
+  }
   /// On A, world axes, N s, one a contact.
   [[nodiscard]] std::vector<Vec3> impulses(const ContactSet& contacts,
                                            const lcp::VectorRef& z) const;
   /// Adds to memory; see ContactMemory::add().
   void remember(const ContactSet& contacts, const lcp::VectorRef& z, ContactMemory& memory) const;
-  /// The solution of a single contact where it has a closed form, else empty: without friction f =
-  /// max(0, -q/A); with a cone or a box 0 where q_N >= 0, else -A^-1 q where that is within the
-  /// bounds.
+  /// The solution of a single contact without joints where it has a closed form, else empty:
+  /// without friction f = max(0, -q/A); with a cone or a box 0 where q_N >= 0, else -A^-1 q where
+  /// that is within the bounds.
   [[nodiscard]] lcp::Vector closed_form() const;
   /// @return how many contacts were known
   int recall(const ContactSet& contacts, const ContactMemory& memory, lcp::Vector& z) const;
@@ -48,6 +54,7 @@ class VelocityProblem {
  private:
   std::variant<PyramidProblem, ConeProblem> form_;
   Eigen::Index contacts_ = 0;
+  Eigen::Index joints_ = 0;  // rows
 };
 
 }  // namespace signorini
