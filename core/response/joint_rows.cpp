@@ -94,7 +94,7 @@ class RowsOfJoint {
   }
 
   void equality(JointRow row, double error) {
-    bounded(row, next_slot_++, error, -kInfinity, kInfinity, 0.0);
+    bounded(std::move(row), next_slot_++, error, -kInfinity, kInfinity, 0.0);
   }
 
   void bounded(JointRow row, int slot, double error, double lower, double upper, double bias) {
@@ -120,7 +120,7 @@ class RowsOfJoint {
   }
 
   /// Limits and motor, along the row of the coordinate.
-  void drive(JointRow along) {
+  void drive(const JointRow& along) {
     const double c = joint_coordinate(joint_, state_);
     const auto [lower, upper] = joint_.limits;
     if (lower == upper) {
