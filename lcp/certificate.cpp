@@ -414,7 +414,8 @@ Certifier::Measure Certifier::bound_group(const Problem& problem, int first, int
       w_tilde += mu * std::sqrt(slip);
     }
   }
-  sum = std::sqrt(w_tilde * w_tilde + slip);
+  // A Coulomb cone's normal part by itself: mu |w_T| may hide a w_N < 0.
+  sum = std::max(std::sqrt(w_tilde * w_tilde + slip), std::abs(w[0]));
   if (!is_inside || !(sum <= fine)) {
     const Eigen::Matrix3d block = diagonal_block(problem.M, first, d);
     scale_[first] = cone >= 0           ? largest_eigenvalue(block, d)

@@ -608,6 +608,23 @@ TEST(QuickCertificate, GivesTheSameVerdictAndNoSmallerNumbers) {
             kInfinity);
 }
 
+// mu |w_T| = -w_N: w~ is 0 while the contact closes with 0.1.
+TEST(QuickCertificate, SeesAContactThatClosesBehindAHugeMu) {
+  FactoredMatrix A;
+  A.mass.add_inverse(Matrix::Identity(3, 3));
+  for (int k = 0; k < 3; ++k) {
+    A.add_row();
+    A.add_entry(0, Vector::Unit(3, k));
+  }
+  Problem problem;
+  problem.M = A;
+  problem.cones = {{0, 3, 1e12}};
+  problem.q = Vector{{-1.1, 1e-13, 0.0}};
+  const Certificate quick = Certifier().certify_quickly(problem, Vector::Unit(3, 0), kTolerance);
+  EXPECT_GT(quick.unit_free_residual, 0.05);
+  EXPECT_EQ(judge(quick, kTolerance, Status::kStalled), Status::kStalled);
+}
+
 // A floor of 1e-4 is double's; computed in long double, the residual may be 1e-7 too small.
 TEST(Judge, TrustsNoResidualBeyondWhatItsOwnRoundingLeaves) {
   Certificate c;
