@@ -1,3 +1,6 @@
+#include <signorini/collision/hull.h>
+#include <signorini/collision/mesh.h>
+
 #include "bench/narrow_phase_peer.h"
 
 #include <btBulletCollisionCommon.h>
@@ -12,24 +15,69 @@ Vec3 ours(const btVector3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-std::unique_ptr<btCollisionShape> bullet_shape(const collision::Shape& shape) {
+/// Bullet's shape, and what it points to.
+struct BulletShape {
+  std::unique_ptr<btTriangleMesh> triangles;
+  std::unique_ptr<btCollisionShape> shape;
+};
+
+/// Bullet grows a hull by its margin: here none, for the hull that was given.
+std::unique_ptr<btCollisionShape> bullet_hull(const collision::HullData& data, bool with_faces) {
+  auto hull = std::make_unique<btConvexHullShape>();
+  for (const Vec3& vertex : data.vertices) {
+    hull->addPoint(bullet(vertex));
+  }
+  hull->setMargin(0.0);
+  if (with_faces) {
+    hull->initializePolyhedralFeatures();
+  }
+  return hull;
+}
+
+BulletShape bullet_mesh(const collision::MeshData& data) {
+  BulletShape result{std::make_unique<btTriangleMesh>(), nullptr};
+  for (const auto& triangle : data.triangles) {
+    result.triangles->addTriangle(bullet(data.vertices[triangle.vertices[0]]),
+                                  bullet(data.vertices[triangle.vertices[1]]),
+                                  bullet(data.vertices[triangle.vertices[2]]));
+  }
+  auto mesh = std::make_unique<btBvhTriangleMeshShape>(result.triangles.get(), true);
+  mesh->setMargin(0.0);
+  result.shape = std::move(mesh);
+  return result;
+}
+
+BulletShape bullet_shape(const collision::Shape& shape, bool with_faces) {
   if (const auto* sphere = std::get_if<collision::Sphere>(&shape)) {
-    return std::make_unique<btSphereShape>(sphere->radius);
+    return {nullptr, std::make_unique<btSphereShape>(sphere->radius)};
   }
   if (const auto* box = std::get_if<collision::Box>(&shape)) {
-    return std::make_unique<btBoxShape>(bullet(box->half_extents));
+    return {nullptr, std::make_unique<btBoxShape>(bullet(box->half_extents))};
   }
-  return nullptr;
+  if (const auto* capsule = std::get_if<collision::Capsule>(&shape)) {
+    return {nullptr,
+            std::make_unique<btCapsuleShapeZ>(capsule->radius, 2.0 * capsule->half_length)};
+  }
+  if (const auto* hull = std::get_if<collision::ConvexHull>(&shape)) {
+    return {nullptr, bullet_hull(*hull->data, with_faces)};
+  }
+  if (const auto* mesh = std::get_if<collision::TriangleMesh>(&shape)) {
+    return bullet_mesh(*mesh->data);
+  }
+  return {};
 }
 
 /// The algorithm that Bullet's dispatcher has for the two shapes, on a manifold emptied before each
 /// query.
 class BulletPair final : public NarrowPhasePeer {
  public:
-  BulletPair(std::unique_ptr<btCollisionShape> a, std::unique_ptr<btCollisionShape> b)
-      : dispatcher_(&configuration_), shape_a_(std::move(a)), shape_b_(std::move(b)) {
-    a_.setCollisionShape(shape_a_.get());
-    b_.setCollisionShape(shape_b_.get());
+  BulletPair(std::string name, BulletShape a, BulletShape b)
+      : name_(std::move(name)),
+        dispatcher_(&configuration_),
+        shape_a_(std::move(a)),
+        shape_b_(std::move(b)) {
+    a_.setCollisionShape(shape_a_.shape.get());
+    b_.setCollisionShape(shape_b_.shape.get());
     manifold_ = dispatcher_.getNewManifold(&a_, &b_);
     const Wrapped wrapped(*this);
     algorithm_ =
@@ -53,7 +101,7 @@ class BulletPair final : public NarrowPhasePeer {
   BulletPair(const BulletPair&) = delete;
   BulletPair& operator=(const BulletPair&) = delete;
 
-  [[nodiscard]] std::string name() const override { return "Bullet"; }
+  [[nodiscard]] std::string name() const override { return name_; }
   void query(const Pose& a, const Pose& b) override {
     a_.setWorldTransform(transform(a));
     b_.setWorldTransform(transform(b));
@@ -86,19 +134,20 @@ class BulletPair final : public NarrowPhasePeer {
     btCollisionObjectWrapper a;
     btCollisionObjectWrapper b;
     explicit Wrapped(const BulletPair& pair)
-        : a(nullptr, pair.shape_a_.get(), &pair.a_, pair.a_.getWorldTransform(), -1, -1),
-          b(nullptr, pair.shape_b_.get(), &pair.b_, pair.b_.getWorldTransform(), -1, -1) {}
+        : a(nullptr, pair.shape_a_.shape.get(), &pair.a_, pair.a_.getWorldTransform(), -1, -1),
+          b(nullptr, pair.shape_b_.shape.get(), &pair.b_, pair.b_.getWorldTransform(), -1, -1) {}
   };
   static btTransform transform(const Pose& pose) {
     const Quat& q = pose.orientation;
     return btTransform(btQuaternion(q.x(), q.y(), q.z(), q.w()), bullet(pose.position));
   }
 
+  std::string name_;
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_;
   btDispatcherInfo info_;
-  std::unique_ptr<btCollisionShape> shape_a_;
-  std::unique_ptr<btCollisionShape> shape_b_;
+  BulletShape shape_a_;
+  BulletShape shape_b_;
   btCollisionObject a_;
   btCollisionObject b_;
   btPersistentManifold* manifold_ = nullptr;
@@ -110,10 +159,16 @@ class BulletPair final : public NarrowPhasePeer {
 
 void add_bullet_narrow_phase(const collision::Shape& a, const collision::Shape& b,
                              NarrowPhasePeers& peers) {
-  auto shape_a = bullet_shape(a);
-  auto shape_b = bullet_shape(b);
-  if (shape_a != nullptr && shape_b != nullptr) {
-    peers.push_back(std::make_unique<BulletPair>(std::move(shape_a), std::move(shape_b)));
+  const bool has_hull = std::holds_alternative<collision::ConvexHull>(a) ||
+                        std::holds_alternative<collision::ConvexHull>(b);
+  for (const bool with_faces : {false, true}) {
+    BulletShape shape_a = bullet_shape(a, with_faces);
+    BulletShape shape_b = bullet_shape(b, with_faces);
+    if (shape_a.shape == nullptr || shape_b.shape == nullptr || (with_faces && !has_hull)) {
+      continue;
+    }
+    peers.push_back(std::make_unique<BulletPair>(with_faces ? "Bullet (faces)" : "Bullet",
+                                                 std::move(shape_a), std::move(shape_b)));
   }
 }
 

@@ -1,11 +1,43 @@
+#include <signorini/collision/hull.h>
+#include <signorini/collision/mesh.h>
+
 #include "bench/narrow_phase_peer.h"
 
+#include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/capsule.h>
+#include <fcl/geometry/shape/convex.h>
 #include <fcl/geometry/shape/sphere.h>
+#include <fcl/math/bv/OBBRSS.h>
 #include <fcl/narrowphase/collision.h>
 
 namespace signorini::bench {
 namespace {
+
+std::shared_ptr<fcl::CollisionGeometry<double>> fcl_hull(const collision::HullData& data) {
+  auto vertices = std::make_shared<std::vector<Vec3>>(data.vertices);
+  auto faces = std::make_shared<std::vector<int>>();
+  for (const std::vector<int>& loop : data.faces) {
+    faces->push_back(static_cast<int>(loop.size()));
+    faces->insert(faces->end(), loop.begin(), loop.end());
+  }
+  return std::make_shared<fcl::Convex<double>>(vertices, static_cast<int>(data.faces.size()),
+                                               faces);
+}
+
+std::shared_ptr<fcl::CollisionGeometry<double>> fcl_mesh(const collision::MeshData& data) {
+  auto mesh = std::make_shared<fcl::BVHModel<fcl::OBBRSS<double>>>();
+  std::vector<fcl::Triangle> triangles;
+  triangles.reserve(data.triangles.size());
+  for (const auto& triangle : data.triangles) {
+    const auto& [i, j, k] = triangle.vertices;
+    triangles.emplace_back(i, j, k);
+  }
+  mesh->beginModel();
+  mesh->addSubModel(data.vertices, triangles);
+  mesh->endModel();
+  return mesh;
+}
 
 std::shared_ptr<fcl::CollisionGeometry<double>> fcl_shape(const collision::Shape& shape) {
   if (const auto* sphere = std::get_if<collision::Sphere>(&shape)) {
@@ -13,6 +45,15 @@ std::shared_ptr<fcl::CollisionGeometry<double>> fcl_shape(const collision::Shape
   }
   if (const auto* box = std::get_if<collision::Box>(&shape)) {
     return std::make_shared<fcl::Box<double>>(Vec3(2.0 * box->half_extents));
+  }
+  if (const auto* capsule = std::get_if<collision::Capsule>(&shape)) {
+    return std::make_shared<fcl::Capsule<double>>(capsule->radius, 2.0 * capsule->half_length);
+  }
+  if (const auto* hull = std::get_if<collision::ConvexHull>(&shape)) {
+    return fcl_hull(*hull->data);
+  }
+  if (const auto* mesh = std::get_if<collision::TriangleMesh>(&shape)) {
+    return fcl_mesh(*mesh->data);
   }
   return nullptr;
 }

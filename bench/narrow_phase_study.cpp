@@ -1,5 +1,7 @@
 #include "bench/narrow_phase_study.h"
 
+#include <signorini/collision/hull.h>
+#include <signorini/collision/mesh.h>
 #include <signorini/collision/pair_query.h>
 
 #include "bench/narrow_phase_peer.h"
@@ -16,6 +18,7 @@ namespace signorini::bench {
 namespace {
 
 using collision::Box;
+using collision::Capsule;
 using collision::Shape;
 using collision::Sphere;
 using collision::testing::Random;
@@ -41,20 +44,89 @@ class OurNarrowPhase final : public NarrowPhasePeer {
 struct Pair {
   const char* name;
   Shape a, b;
+  Quat face_down_a = Quat::Identity();  ///< turns A so that a face of it looks down
+  Quat face_up_b = Quat::Identity();    ///< turns B so that a face of it looks up
 };
+
+/// The hull of 18 points of a spiral on an ellipsoid: 32 triangles, each found by trying every
+/// three points.
+collision::ConvexHull hull_of_32_faces(const Vec3& radii) {
+  constexpr int kPoints = 18;
+  std::vector<Vec3> points;
+  points.reserve(kPoints);
+  for (int k = 0; k < kPoints; ++k) {
+    const double z = 1.0 - (2.0 * k + 1.0) / kPoints;
+    const double angle = k * M_PI * (3.0 - std::sqrt(5.0));
+    const double r = std::sqrt(1.0 - z * z);
+    points.push_back(radii.cwiseProduct(Vec3(r * std::cos(angle), r * std::sin(angle), z)));
+  }
+  std::vector<std::vector<int>> faces;
+  for (int i = 0; i < kPoints; ++i) {
+    for (int j = i + 1; j < kPoints; ++j) {
+      for (int k = j + 1; k < kPoints; ++k) {
+        const Vec3 n = (points[j] - points[i]).cross(points[k] - points[i]);
+        int above = 0;
+        int below = 0;
+        for (const Vec3& point : points) {
+          const double height = n.dot(point - points[i]);
+          above += height > 1e-12 ? 1 : 0;
+          below += height < -1e-12 ? 1 : 0;
+        }
+        if (above == 0) {
+          faces.push_back({i, j, k});
+        } else if (below == 0) {
+          faces.push_back({i, k, j});
+        }
+      }
+    }
+  }
+  return collision::make_hull(std::move(points), std::move(faces));
+}
+
+/// Ground of 200 triangles, 5 m square: flat where x < 0, bumps elsewhere.
+collision::TriangleMesh ground() {
+  constexpr int kSide = 11;
+  std::vector<double> heights;
+  heights.reserve(kSide * kSide);
+  for (int j = 0; j < kSide; ++j) {
+    for (int i = 0; i < kSide; ++i) {
+      heights.push_back(i <= kSide / 2 ? 0.0 : 0.15 * std::sin(2.0 * i) * std::cos(1.7 * j));
+    }
+  }
+  return collision::make_height_field(heights, kSide, kSide, 0.5, 0.5);
+}
+
+Quat turn_face(const collision::ConvexHull& hull, const Vec3& to) {
+  return Quat::FromTwoVectors(hull.data->normals[0], to);
+}
+
+bool is_mesh(const Shape& shape) {
+  return std::holds_alternative<collision::TriangleMesh>(shape);
+}
 
 struct PosePair {
   Pose a, b;
 };
 
+/// Poses to start from: B at the origin, A above it or beside it.
+PosePair apart(const Pair& pair, bool is_flush, Random& random) {
+  const Quat yaw(Eigen::AngleAxisd(uniform(random, 0.0, 7.0), Vec3::UnitZ()));
+  const Vec3 aside(uniform(random, -0.4, 0.4), uniform(random, -0.4, 0.4), 2.0);
+  if (is_mesh(pair.b)) {
+    return {{is_flush ? Vec3(aside - 1.2 * Vec3::UnitX()) : Vec3(aside + 1.2 * Vec3::UnitX()),
+             is_flush ? yaw * pair.face_down_a : random_orientation(random)},
+            {}};
+  }
+  if (is_flush) {
+    return {{aside, yaw * pair.face_down_a}, {Vec3::Zero(), pair.face_up_b}};
+  }
+  return {{2.0 * random_direction(random), random_orientation(random)},
+          {Vec3::Zero(), random_orientation(random)}};
+}
+
 /// A beside B, then moved along the contact normal until it is at most 2 % deep.
 PosePair touching(const Pair& pair, bool is_flush, Random& random) {
-  const Quat turn = is_flush ? Quat(Eigen::AngleAxisd(uniform(random, 0.0, 7.0), Vec3::UnitZ()))
-                             : random_orientation(random);
-  const Vec3 aside(uniform(random, -0.4, 0.4), uniform(random, -0.4, 0.4), 0.0);
-  PosePair poses{
-      {is_flush ? Vec3(aside + 2.0 * Vec3::UnitZ()) : Vec3(2.0 * random_direction(random)), turn},
-      {Vec3::Zero(), is_flush ? Quat::Identity() : random_orientation(random)}};
+  PosePair poses = apart(pair, is_flush, random);
   std::vector<Contact> contacts;
   collision::find_intersection(pair.a, poses.a, pair.b, poses.b,
                                std::numeric_limits<double>::infinity(), contacts);
@@ -65,18 +137,33 @@ PosePair touching(const Pair& pair, bool is_flush, Random& random) {
   return poses;
 }
 
-bool is_valid(const Pair& pair, const PosePair& poses, const Contact& contact, double distance) {
-  constexpr double kTolerance = 1e-3;  // of shapes about 1 m large
+constexpr double kTolerance = 1e-3;  // of shapes about 1 m large
+
+bool is_on(const Shape& shape, const Pose& pose, const Vec3& point) {
+  return collision::signed_distance(Sphere{kTolerance}, {point, Quat::Identity()}, shape, pose) <=
+         kTolerance;
+}
+
+/// The normal parts the shapes as well as the best does; from a mesh, which has no one best normal:
+/// by no more than the deepest of its triangles needs.
+bool has_good_normal(const Pair& pair, const PosePair& poses, const Contact& contact,
+                     double distance) {
   const Vec3& N = contact.normal;
+  if (is_mesh(pair.b)) {
+    const double gap = N.dot(contact.point_a - contact.point_b);
+    return gap >= distance - kTolerance &&
+           (contact.point_a - contact.point_b - gap * N).norm() <= kTolerance;
+  }
   const double best = -support(pair.a, poses.a, -N) - support(pair.b, poses.b, N);
-  const double beyond_a = -N.dot(contact.point_a) - support(pair.a, poses.a, -N);
-  const double beyond_b = N.dot(contact.point_b) - support(pair.b, poses.b, N);
-  return std::abs(N.norm() - 1.0) <= kTolerance && best >= distance - kTolerance &&
-         beyond_a <= kTolerance && beyond_b <= kTolerance &&
-         collision::signed_distance(Sphere{kTolerance}, {contact.point_a, Quat::Identity()}, pair.a,
-                                    poses.a) <= kTolerance &&
-         collision::signed_distance(Sphere{kTolerance}, {contact.point_b, Quat::Identity()}, pair.b,
-                                    poses.b) <= kTolerance;
+  return best >= distance - kTolerance &&
+         -N.dot(contact.point_a) - support(pair.a, poses.a, -N) <= kTolerance &&
+         N.dot(contact.point_b) - support(pair.b, poses.b, N) <= kTolerance;
+}
+
+bool is_valid(const Pair& pair, const PosePair& poses, const Contact& contact, double distance) {
+  return std::abs(contact.normal.norm() - 1.0) <= kTolerance &&
+         has_good_normal(pair, poses, contact, distance) &&
+         is_on(pair.a, poses.a, contact.point_a) && is_on(pair.b, poses.b, contact.point_b);
 }
 
 NarrowPhaseRow measure(NarrowPhasePeer& peer, const Pair& pair, const std::vector<PosePair>& poses,
@@ -117,12 +204,20 @@ std::string NarrowPhaseReport::to_csv() const {
 }
 
 NarrowPhaseReport run_narrow_phase_study(const NarrowPhaseOptions& options, std::ostream& out) {
+  const collision::ConvexHull stone = hull_of_32_faces({0.5, 0.45, 0.4});
+  const collision::ConvexHull rock = hull_of_32_faces({0.6, 0.5, 0.45});
+  const Vec3 up = Vec3::UnitZ();
+  const Box brick{Vec3(0.6, 0.5, 0.4)};
+  const Quat lying(Eigen::AngleAxisd(M_PI_2, Vec3::UnitX()));
   const Pair pairs[] = {
-      {"box-box", Box{Vec3(0.5, 0.4, 0.3)}, Box{Vec3(0.6, 0.5, 0.4)}},
-      {"sphere-box", Sphere{0.5}, Box{Vec3(0.6, 0.5, 0.4)}},
+      {"box-box", Box{Vec3(0.5, 0.4, 0.3)}, brick},
+      {"sphere-box", Sphere{0.5}, brick},
+      {"box-hull", brick, rock, Quat::Identity(), turn_face(rock, up)},
+      {"hull-hull", stone, rock, turn_face(stone, -up), turn_face(rock, up)},
+      {"capsule-mesh", Capsule{0.2, 0.4}, ground(), lying},
   };
   NarrowPhaseReport report;
-  out << fmt::format("{:<14}{:<14}{:>10}{:>10}{:>10}\n", "pair", "", "ns", "points", "valid");
+  out << fmt::format("{:<14}{:<16}{:>10}{:>10}{:>10}\n", "pair", "", "ns", "points", "valid");
   for (const Pair& pair : pairs) {
     Random random(options.seed);
     std::vector<PosePair> poses;
@@ -140,7 +235,7 @@ NarrowPhaseReport run_narrow_phase_study(const NarrowPhaseOptions& options, std:
 #endif
     for (const auto& peer : peers) {
       const NarrowPhaseRow row = measure(*peer, pair, poses, options.repeats);
-      out << fmt::format("{:<14}{:<14}{:>10.0f}{:>10.2f}{:>10.2f}\n", row.pair, row.name,
+      out << fmt::format("{:<14}{:<16}{:>10.0f}{:>10.2f}{:>10.2f}\n", row.pair, row.name,
                          row.nanoseconds, row.points, row.valid);
       out.flush();
       report.rows.push_back(row);

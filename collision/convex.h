@@ -83,6 +83,24 @@ struct Facet {
   }
 };
 
+struct HullData;
+
+/// A convex polyhedron in its own frame, and where that is. A box is the cube |x| <= 1, stretched.
+struct Polyhedron {
+  const HullData* shape = nullptr;  ///< faces, edges and normals
+  const Vec3* vertices = nullptr;   ///< as many as the shape's, m
+  const double* offsets = nullptr;  ///< of the faces, m
+  const double* areas = nullptr;    ///< of the faces, m^2
+  Vec3 position = Vec3::Zero();
+  Mat3 axes = Mat3::Identity();
+  double size = 0.0;  ///< as Convex::size()
+  int corners = 0;    ///< how many
+  int faces = 0;
+  bool is_box = false;
+
+  [[nodiscard]] Stratum edge(int number) const;
+};
+
 /// A convex shape in the frame of a query: all points within `rounding` of a core.
 class Convex {
  public:
@@ -95,6 +113,9 @@ class Convex {
   virtual void add_strata(const Vec3& n, double angle, std::vector<Stratum>& strata) const = 0;
   /// @param facet replaced
   virtual void facet(const Vec3& n, Facet& facet) const = 0;
+
+  /// The shape as a polyhedron; null: it is none, or is not met as one.
+  [[nodiscard]] virtual const Polyhedron* polyhedron() const { return nullptr; }
 
   [[nodiscard]] double rounding() const { return rounding_; }
   [[nodiscard]] const Vec3& centre() const { return centre_; }

@@ -1,6 +1,7 @@
 #include <signorini/collision/convex_contacts.h>
 #include <signorini/collision/facet_clip.h>
 #include <signorini/collision/narrow.h>
+#include <signorini/collision/polyhedron_separation.h>
 #include <signorini/collision/separation.h>
 
 #include <algorithm>
@@ -256,6 +257,47 @@ bool are_parallel(const Convex& a, const Convex& b, const Meeting& meeting) {
              std::min(std::max(first, last), meeting.a.range[1]);
 }
 
+/// The contact set of a preferred face. False, and nothing added, where the face misses the deepest
+/// point (a rim beside its edge).
+bool find_all_on_face(const Convex& a, const Convex& b, const FacingFace& face, double distance,
+                      double margin, std::vector<Contact>& contacts) {
+  const std::size_t before = contacts.size();
+  find_contacts_on_face(a, b, face, margin, contacts);
+  if (least_gap(contacts, before) <= distance + preference_tolerance(a, b)) {
+    return true;
+  }
+  contacts.resize(before);
+  return false;
+}
+
+/// What the separating axes of two polyhedra say.
+enum class AxesSay { kAll, kTouching, kNothing };
+
+/// kAll: the contact set is complete. kTouching: they are no further apart than the margin, but the
+/// set is not found here.
+AxesSay find_polyhedron_contacts(const Convex& a, const Convex& b, double margin,
+                                 std::vector<Contact>& contacts) {
+  PolyhedronSeparation found;
+  separate_polyhedra(a, b, found);
+  if (found.separation > margin) {
+    return AxesSay::kAll;
+  }
+  if (!found.is_distance) {
+    return AxesSay::kNothing;
+  }
+  if (found.face) {
+    return find_all_on_face(a, b, *found.face, found.separation, margin, contacts)
+               ? AxesSay::kAll
+               : AxesSay::kTouching;
+  }
+  Contact contact;
+  if (meet(a, b, found.edges, found.separation, contact) > preference_tolerance(a, b)) {
+    return AxesSay::kTouching;
+  }
+  contacts.push_back(contact);
+  return AxesSay::kAll;
+}
+
 }  // namespace
 
 void find_contacts_on_face(const Convex& a, const Convex& b, const FacingFace& face, double margin,
@@ -279,9 +321,11 @@ void find_contacts_on_face(const Convex& a, const Convex& b, const FacingFace& f
     found.add(point.on_reference, point.reference, point.on_incident, point.height, point.incident,
               point.surface);
   }
+  if (!(face.separation < least_gap(contacts, first) - slack)) {
+    return;
+  }
   const Deepest deepest(other, -outward);
-  if (face.separation < least_gap(contacts, first) - slack &&
-      is_over(reference, deepest.core, slack)) {
+  if (is_over(reference, deepest.core, slack)) {
     const double height = face.separation + other.rounding();
     found.add(deepest.core - height * outward, reference.face, deepest.core, height,
               deepest.piece.feature, deepest.surface);
@@ -290,20 +334,20 @@ void find_contacts_on_face(const Convex& a, const Convex& b, const FacingFace& f
 
 void find_contacts(const Convex& a, const Convex& b, double margin,
                    std::vector<Contact>& contacts) {
+  AxesSay axes = AxesSay::kNothing;
+  if (a.polyhedron() != nullptr && b.polyhedron() != nullptr) {
+    axes = find_polyhedron_contacts(a, b, margin, contacts);
+  }
+  if (axes == AxesSay::kAll) {
+    return;
+  }
   Separation& found = memory().separation;
   separate(a, b, found);
-  if (found.distance > margin) {
+  if ((found.distance > margin && axes != AxesSay::kTouching) ||
+      (found.face && find_all_on_face(a, b, *found.face, found.distance, margin, contacts))) {
     return;
   }
   const std::size_t before = contacts.size();
-  if (found.face) {
-    find_contacts_on_face(a, b, *found.face, margin, contacts);
-    // Where the face misses the deepest point (a rim beside its edge) it carries no contact set.
-    if (least_gap(contacts, before) <= found.distance + 2.0 * preference_tolerance(a, b)) {
-      return;
-    }
-    contacts.resize(before);
-  }
   double least = std::numeric_limits<double>::infinity();
   Contact nearest;
   for (const Meeting& meeting : found.meetings) {

@@ -1,6 +1,7 @@
 #include <signorini/collision/convex_shapes.h>
 
 #include <cmath>
+#include <utility>
 
 namespace signorini::collision {
 namespace {
@@ -33,7 +34,61 @@ Stratum face_stratum(const Vec3& point, const Vec3& normal, double area, Feature
   return stratum;
 }
 
+/// The cube |x| <= 1: vertex v is the corner whose coordinates have the signs of its bits, face
+/// 2 k and 2 k + 1 the low and high one of axis k.
+const HullData& unit_cube() {
+  static const ConvexHull cube = [] {
+    std::vector<Vec3> corners;
+    corners.reserve(8);
+    for (int v = 0; v < 8; ++v) {
+      corners.emplace_back(v & 1 ? 1.0 : -1.0, v & 2 ? 1.0 : -1.0, v & 4 ? 1.0 : -1.0);
+    }
+    return make_hull(
+        std::move(corners),
+        {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}});
+  }();
+  return *cube.data;
+}
+
+BoxSides sides_of(int cube_vertex) {
+  return {cube_vertex & 1 ? 1 : -1, cube_vertex & 2 ? 1 : -1, cube_vertex & 4 ? 1 : -1};
+}
+
 }  // namespace
+
+Stratum Polyhedron::edge(int number) const {
+  const auto [from, to, left, right] = shape->edges[number];
+  Feature first = static_cast<Feature>(from);
+  Feature last = static_cast<Feature>(to);
+  Feature feature = static_cast<Feature>(shape->vertices.size()) + static_cast<Feature>(number);
+  if (is_box) {
+    BoxSides sides = sides_of(from);
+    first = box_feature(sides);
+    last = box_feature(sides_of(to));
+    for (int k = 0; k < 3; ++k) {
+      sides[k] = sides[k] == sides_of(to)[k] ? sides[k] : 0;
+    }
+    feature = box_feature(sides);
+  }
+  return edge_stratum(position + axes * vertices[from], position + axes * vertices[to], feature,
+                      first, last);
+}
+
+BoxCore::BoxCore(const Box& box, const Pose& pose)
+    : Convex(pose.position, box.half_extents.norm(), 0.0), box_(box, pose) {
+  const HullData& cube = unit_cube();
+  for (int v = 0; v < 8; ++v) {
+    vertices_[v] = box_.half.cwiseProduct(cube.vertices[v]);
+  }
+  for (int f = 0; f < 6; ++f) {
+    const int k = f / 2;
+    offsets_[f] = box_.half[k];
+    areas_[f] = 4.0 * box_.half[(k + 1) % 3] * box_.half[(k + 2) % 3];
+  }
+  polyhedron_ = {
+      &cube, vertices_.data(), offsets_.data(), areas_.data(), box_.centre, box_.axes, size(), 8, 6,
+      true};
+}
 
 Vec3 BoxCore::support(const Vec3& n) const {
   BoxSides sides;
@@ -104,7 +159,17 @@ HullCore::HullCore(const ConvexHull& hull, const Pose& pose)
     : Convex(pose * hull.data->centre, hull.data->radius, 0.0),
       data_(hull.data.get()),
       position_(pose.position),
-      axes_(pose.orientation.toRotationMatrix()) {}
+      axes_(pose.orientation.toRotationMatrix()),
+      polyhedron_{data_,
+                  data_->vertices.data(),
+                  data_->offsets.data(),
+                  data_->areas.data(),
+                  position_,
+                  axes_,
+                  size(),
+                  static_cast<int>(data_->vertices.size()),
+                  static_cast<int>(data_->faces.size()),
+                  false} {}
 
 Feature HullCore::edge_feature(int e) const {
   return static_cast<Feature>(data_->vertices.size()) + static_cast<Feature>(e);
@@ -156,12 +221,23 @@ void HullCore::add_strata(const Vec3& n, double angle, std::vector<Stratum>& str
 }
 
 void HullCore::facet(const Vec3& n, Facet& facet) const {
-  // Of faces that face n equally to 1e-6 the first, so that rounding does not choose.
+  // Of faces that face n equally to 1e-6 the first, so that rounding does not choose; a face with
+  // this very normal before them.
   constexpr double kTie = 1e-6;
+  constexpr double kSame = 1e-14;
   const Vec3 local = axes_.transpose() * n;
+  const int count = static_cast<int>(data_->faces.size());
   int face = 0;
-  for (int f = 1; f < static_cast<int>(data_->faces.size()); ++f) {
-    if (local.dot(data_->normals[f]) > local.dot(data_->normals[face]) + kTie) {
+  double highest = local.dot(data_->normals[0]);
+  for (int f = 1; f < count; ++f) {
+    const double along = local.dot(data_->normals[f]);
+    if (along > highest) {
+      highest = along;
+      face = f;
+    }
+  }
+  for (int f = 0; highest < 1.0 - kSame && f < face; ++f) {
+    if (local.dot(data_->normals[f]) >= highest - kTie) {
       face = f;
     }
   }

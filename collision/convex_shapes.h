@@ -96,15 +96,21 @@ class EllipsoidCore final : public Convex {
 
 class BoxCore final : public Convex {
  public:
-  BoxCore(const Box& box, const Pose& pose)
-      : Convex(pose.position, box.half_extents.norm(), 0.0), box_(box, pose) {}
+  BoxCore(const Box& box, const Pose& pose);
+  BoxCore(const BoxCore&) = delete;
+  BoxCore& operator=(const BoxCore&) = delete;
 
   [[nodiscard]] Vec3 support(const Vec3& n) const override;
   void add_strata(const Vec3& n, double angle, std::vector<Stratum>& strata) const override;
   void facet(const Vec3& n, Facet& facet) const override;
+  [[nodiscard]] const Polyhedron* polyhedron() const override { return &polyhedron_; }
 
  private:
   PlacedBox box_;
+  std::array<Vec3, 8> vertices_;
+  std::array<double, 6> offsets_;
+  std::array<double, 6> areas_;
+  Polyhedron polyhedron_;
 };
 
 /// Features of a hull: vertex v is v, edge e is (vertices) + e, face f is (vertices) + (edges) + f.
@@ -115,6 +121,7 @@ class HullCore final : public Convex {
   [[nodiscard]] Vec3 support(const Vec3& n) const override;
   void add_strata(const Vec3& n, double angle, std::vector<Stratum>& strata) const override;
   void facet(const Vec3& n, Facet& facet) const override;
+  [[nodiscard]] const Polyhedron* polyhedron() const override { return &polyhedron_; }
 
  private:
   [[nodiscard]] Vec3 vertex(int v) const { return position_ + axes_ * data_->vertices[v]; }
@@ -126,6 +133,7 @@ class HullCore final : public Convex {
   const HullData* data_;
   Vec3 position_;
   Mat3 axes_;
+  Polyhedron polyhedron_;
 };
 
 /// The core of each shape that has one.

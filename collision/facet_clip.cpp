@@ -159,16 +159,22 @@ Inside over_polygon(const Vec3& p, const Vec3& q, const Facet& polygon, double s
   Inside inside{0.0, 1.0, polygon.face, polygon.face};
   for (std::size_t k = 0; k < polygon.corners.size(); ++k) {
     const Side side(polygon, k);
-    const double here = side.excess(p) - slack;
-    const double there = side.excess(q) - slack;
-    if (here > 0.0 && there > 0.0) {
+    const double here = side.excess(p);
+    const double there = side.excess(q);
+    if (here > slack && there > slack) {
       inside.from = 2.0;
-    } else if (here > 0.0 && here / (here - there) > inside.from) {
-      inside.from = here / (here - there);
-      inside.at_from = polygon.corners[k].edge;
-    } else if (there > 0.0 && here / (here - there) < inside.to) {
-      inside.to = here / (here - there);
-      inside.at_to = polygon.corners[k].edge;
+    } else if (here > slack) {
+      const double enter = there < 0.0 ? here / (here - there) : 1.0;
+      if (enter > inside.from) {
+        inside.from = enter;
+        inside.at_from = polygon.corners[k].edge;
+      }
+    } else if (there > slack) {
+      const double leave = here < 0.0 ? here / (here - there) : 0.0;
+      if (leave < inside.to) {
+        inside.to = leave;
+        inside.at_to = polygon.corners[k].edge;
+      }
     }
   }
   return inside;
@@ -297,8 +303,9 @@ void clip_with_disc(const Facet& incident, const Facet& reference, double slack,
   });
 }
 
-/// Two discs whose rims cross between their corners: the two crossings.
-void add_crossed_rims(const Facet& incident, const Facet& reference,
+/// Two discs whose rims cross between their corners: the two crossings, if the discs are so nearly
+/// parallel that the incident rim is seen as a circle to `slack`.
+void add_crossed_rims(const Facet& incident, const Facet& reference, double slack,
                       std::vector<FacetPoint>& points) {
   const Vec3 centre = onto_plane(incident.disc_centre, reference.normal, reference);
   const Vec3 between = centre - reference.disc_centre;
@@ -316,8 +323,10 @@ void add_crossed_rims(const Facet& incident, const Facet& reference,
     const Feature shift = side == 0 ? 4 : 6;
     const FacetCorner rim{Vec3::Zero(), incident.rim + shift, 0, LocalSurface::vertex()};
     const Vec3 foot = side == 0 ? Vec3(middle - half) : Vec3(middle + half);
-    points.push_back(
-        over(reference, onto_plane(foot, reference.normal, incident), rim, reference.rim + shift));
+    const Vec3 on_incident = onto_plane(foot, reference.normal, incident);
+    if (std::abs((on_incident - incident.disc_centre).norm() - incident.disc_radius) <= slack) {
+      points.push_back(over(reference, on_incident, rim, reference.rim + shift));
+    }
   }
 }
 
@@ -350,7 +359,7 @@ void clip_facet(const Facet& incident, const Facet& reference, double slack,
   } else if (incident.is_disc() || reference.is_disc()) {
     clip_with_disc(incident, reference, slack, points);
     if (points.empty() && incident.is_disc() && reference.is_disc()) {
-      add_crossed_rims(incident, reference, points);
+      add_crossed_rims(incident, reference, slack, points);
     }
   } else {
     clip_polygons(incident, reference, slack, points);

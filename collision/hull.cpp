@@ -64,6 +64,9 @@ class Maker {
     for (int f = 0; f < static_cast<int>(hull_.faces.size()); ++f) {
       add_plane(f);
     }
+    for (const HullData::Edge& edge : hull_.edges) {
+      hull_.arcs.push_back(hull_.normals[edge.right].cross(hull_.normals[edge.left]).normalized());
+    }
     integrate();
     return std::move(hull_);
   }

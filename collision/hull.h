@@ -21,6 +21,7 @@ struct HullData {
   std::vector<double> offsets;          ///< of the faces: max n.x over the vertices, m
   std::vector<double> areas;            ///< of the faces, m^2
   std::vector<Edge> edges;
+  std::vector<Vec3> arcs;  ///< of the edges: across the arc of normals from right to left, unit
   std::vector<std::vector<int>> neighbours;       ///< of each vertex: those it has an edge to
   std::vector<std::vector<int>> faces_of_vertex;  ///< of each vertex, ascending
   std::vector<std::vector<int>> edges_of_vertex;  ///< of each vertex, ascending

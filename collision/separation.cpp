@@ -1,5 +1,6 @@
 #include <signorini/collision/gjk.h>
 #include <signorini/collision/penetration.h>
+#include <signorini/collision/polyhedron_separation.h>
 #include <signorini/collision/separation.h>
 
 #include <Eigen/Dense>
@@ -184,20 +185,6 @@ const Stratum* furthest_free(const std::vector<Stratum>& pieces, const Vec3& n) 
   return best;
 }
 
-/// Of two faces with equal separation the larger; of equal ones that of the shape which lies lower
-/// along a direction that no scene is aligned with. The rule gives the same shape when A and B are
-/// exchanged.
-bool prefers(const FacingFace& p, double area_p, const FacingFace& q, double area_q) {
-  if (std::abs(area_p - area_q) > 1e-9 * (area_p + area_q)) {
-    return area_p > area_q;
-  }
-  if (p.of_a == q.of_a) {
-    return false;
-  }
-  const Vec3 odd_direction(0.2672612, 0.5345225, 0.8017837);
-  return ((p.normal + q.normal).dot(odd_direction) < 0.0) == p.of_a;
-}
-
 struct Candidate {
   double distance;
   Vec3 normal;
@@ -361,6 +348,17 @@ void run(Search& search, const Convex& a, const Convex& b, std::vector<Axis>& ax
 
 }  // namespace
 
+bool prefers(const FacingFace& p, double area_p, const FacingFace& q, double area_q) {
+  if (std::abs(area_p - area_q) > 1e-9 * (area_p + area_q)) {
+    return area_p > area_q;
+  }
+  if (p.of_a == q.of_a) {
+    return false;
+  }
+  const Vec3 odd_direction(0.2672612, 0.5345225, 0.8017837);
+  return ((p.normal + q.normal).dot(odd_direction) < 0.0) == p.of_a;
+}
+
 double preference_tolerance(const Convex& a, const Convex& b) {
   return 1e-6 * std::min(a.size(), b.size());
 }
@@ -376,12 +374,28 @@ void separate(const Convex& a, const Convex& b, Separation& separation) {
 }
 
 double distance(const Convex& a, const Convex& b) {
+  double at_least = -std::numeric_limits<double>::infinity();
+  if (a.polyhedron() != nullptr && b.polyhedron() != nullptr) {
+    PolyhedronSeparation found;
+    separate_polyhedra(a, b, found);
+    if (found.is_distance) {
+      return found.separation;
+    }
+    at_least = found.separation;
+  }
   Search search(a, b, memory());
   run(search, a, b, memory().axes);
-  return search.distance();
+  return std::max(at_least, search.distance());
 }
 
 bool overlap(const Convex& a, const Convex& b) {
+  if (a.polyhedron() != nullptr && b.polyhedron() != nullptr) {
+    PolyhedronSeparation found;
+    separate_polyhedra(a, b, found);
+    if (found.separation > 0.0 || found.is_distance) {
+      return found.separation <= 0.0;
+    }
+  }
   const double touch = kTouch * std::min(a.size(), b.size());
   const GjkResult near = gjk(a, b, 0.5, touch);
   if (near.lower > a.rounding() + b.rounding() + touch) {

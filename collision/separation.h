@@ -38,6 +38,12 @@ struct Separation {
 /// them.
 [[nodiscard]] double preference_tolerance(const Convex& a, const Convex& b);
 
+/// Of two faces with equal separation the larger; of equal ones that of the shape which lies lower
+/// along a direction that no scene is aligned with. The rule gives the same shape when A and B are
+/// exchanged.
+/// @param area_p, area_q of the faces, m^2
+[[nodiscard]] bool prefers(const FacingFace& p, double area_p, const FacingFace& q, double area_q);
+
 /// The signed distance d = max s(n), over unit n, of s(n) = -h_A(-n) - h_B(n): apart, the distance;
 /// overlapping, minus the least translation that parts them.
 ///
@@ -52,6 +58,7 @@ struct Separation {
 /// translations whose lengths differ by less than 1e-8 of the smaller size either may be returned.
 /// Allocates nothing once no shape has more pieces near a direction than an earlier one of this
 /// thread.
+/// Two polyhedra come here only where separate_polyhedra() leaves them.
 /// @param separation replaced
 /// @pre not both cores are points or segments
 void separate(const Convex& a, const Convex& b, Separation& separation);

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <gtest/gtest.h>
 #include <limits>
+#include <vector>
 
 namespace signorini::collision {
 namespace {
@@ -81,7 +82,7 @@ Pose at(double x, double y, double z, double qx, double qy, double qz, double qw
 
 // Poses at which a property was once wrong.
 TEST(ConvexPair, HoldsEveryPropertyWhereOneWasBroken) {
-  const testing::PlacedPair pairs[] = {
+  std::vector<testing::PlacedPair> pairs = {
       // The face is preferred by the tolerance, but the rim's deepest point lies beside it: the set
       // on the face began 469 tolerances above the distance.
       {Box{{0.0014528013597350663, 0.0082806398529944782, 0.017356153400246717}},
@@ -103,6 +104,13 @@ TEST(ConvexPair, HoldsEveryPropertyWhereOneWasBroken) {
        Cylinder{614.51096047721364, 134.59432692874907},
        at(-621.94483405930407, -29.489801910523692, 279.6280922716918, 0.46821483130365305,
           0.52988194148547119, -0.52988194139142775, -0.46821483105742284)},
+      // Rims that cross, of discs that are not parallel: the crossing was beside the smaller one.
+      {Cylinder{115.76298632086966, 64.592306334078259},
+       at(82.21077572513866, -75.244874521431157, 30.667822655757501, -0.55328727824293134,
+          0.44031033094200578, 0.44031033129961378, -0.55328727832030877),
+       Cylinder{0.074299935701344993, 0.080177133241952928},
+       at(119.26707504394525, 52.041776651774967, 25.8698019972075, 0.49999999999566769,
+          0.50000000000031897, -0.49999999999884809, -0.5000000000051652)},
       // Parallel generators that touch at their ends alone: the crossing of parallel lines.
       {Cylinder{10.872896331155939, 45.420296294681123},
        at(103.84722757075262, 300.85048018247181, -271.04896061794352, 4.329780281177467e-17,
@@ -118,6 +126,19 @@ TEST(ConvexPair, HoldsEveryPropertyWhereOneWasBroken) {
        at(105.01244610176171, -21.486570809987708, -5.0518397185408883, 0.50000000000361533,
           -0.49999999999618272, -0.49999999998959699, -0.50000000001060496)},
   };
+  // Two polyhedra kissing: their axes said touching, the search that makes the set apart by 6e-17.
+  const ConvexHull tetrahedron =
+      make_hull({{-0.40596727655479031, 2.2547525735649145, -0.58980494513365911},
+                 {0.80268951664092447, 2.2547525735649145, -0.58980494513365911},
+                 {-0.40596727655479031, 5.1940000367902233, -0.58980494513365911},
+                 {-0.40596727655479031, 2.2547525735649145, 11.23874998661417}},
+                {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}});
+  pairs.push_back({Box{{0.75363591157204346, 0.37083913989242795, 1.8576115175638532}},
+                   at(10.662410349023453, -1.9351925941389965, -10.895217331448755,
+                      0.50000000000000011, -0.5, -0.49999999999999989, -0.5),
+                   tetrahedron,
+                   at(9.7017662639973672, 0.32838619997964658, -9.3941006694558826,
+                      0.49999999999999994, 0.49999999999999994, -0.5, -0.50000000000000011)});
   testing::Random random(1);
   for (const testing::PlacedPair& posed : pairs) {
     testing::PlacedPair pair = posed;
