@@ -25,6 +25,11 @@ foreach(part lcp core collision)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${part} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/signorini
           ${development} FILES_MATCHING PATTERN "*.h")
 endforeach()
+if(TARGET signorini_bullet OR TARGET signorini_bullet_float)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/integrations/bullet
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/signorini/integrations
+          ${development} FILES_MATCHING PATTERN "*.h" PATTERN example_scenes EXCLUDE)
+endif()
 if(TARGET signorini_c)  # whose other headers are its own
   install(FILES ${PROJECT_SOURCE_DIR}/c/signorini.h
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/signorini/c ${development})
@@ -41,12 +46,14 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/signorini-config.cmake
   ${PROJECT_BINARY_DIR}/signorini-config.cmake INSTALL_DESTINATION ${SIGNORINI_CMAKE_DIR})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/signorini-config-version.cmake
   COMPATIBILITY SameMinorVersion)
-file(COPY ${PROJECT_SOURCE_DIR}/cmake/FindGMP.cmake ${PROJECT_SOURCE_DIR}/cmake/FindCHOLMOD.cmake
-     DESTINATION ${PROJECT_BINARY_DIR})
+set(SIGNORINI_FIND_MODULES)
+foreach(package GMP CHOLMOD BulletDouble BulletFloat)
+  list(APPEND SIGNORINI_FIND_MODULES ${PROJECT_SOURCE_DIR}/cmake/Find${package}.cmake)
+endforeach()
+file(COPY ${SIGNORINI_FIND_MODULES} DESTINATION ${PROJECT_BINARY_DIR})
 install(FILES ${PROJECT_BINARY_DIR}/signorini-config.cmake
               ${PROJECT_BINARY_DIR}/signorini-config-version.cmake
-              ${PROJECT_SOURCE_DIR}/cmake/FindGMP.cmake
-              ${PROJECT_SOURCE_DIR}/cmake/FindCHOLMOD.cmake
+              ${SIGNORINI_FIND_MODULES}
         DESTINATION ${SIGNORINI_CMAKE_DIR} ${development})
 
 # pkg-config: signorini-lcp.pc and so on, for builds without CMake; they find themselves, wherever
@@ -95,6 +102,10 @@ signorini_pkg_config(io "problem folders, dump and replay" REQUIRES signorini-lc
 signorini_pkg_config(model "bodies, contacts, motion" REQUIRES eigen3)
 signorini_pkg_config(core "impacts, resting forces, time stepping"
   REQUIRES signorini-model signorini-lcp)
+signorini_pkg_config(bullet "our solvers inside Bullet, double precision"
+  REQUIRES signorini-lcp bullet-float64)
+signorini_pkg_config(bullet_float "our solvers inside Bullet, single precision"
+  REQUIRES signorini-lcp bullet)
 signorini_pkg_config(hulls "convex hulls of points" REQUIRES signorini-collision
   PRIVATE_LIBS -lqhull_r)
 signorini_pkg_config(mesh_files "triangles of mesh files" REQUIRES signorini-model
