@@ -1,4 +1,5 @@
-/* The C API of Signorini: complementarity problems and contact problems, solved and certified.
+/** @file
+ * The C API of Signorini: complementarity problems and contact problems, solved and certified.
  *
  * Stable: within one SOVERSION functions, enumerators and struct fields are only added. Structs
  * that the library fills are passed with their size, so that a program keeps working with a library
@@ -29,11 +30,14 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/** @cond */
 #if defined(_WIN32)
 #define SIGNORINI_API
 #else
 #define SIGNORINI_API __attribute__((visibility("default")))
 #endif
+
+/** @endcond */
 
 #ifdef __cplusplus
 extern "C" {
@@ -87,18 +91,21 @@ SIGNORINI_API int signorini_is_solved(signorini_status status);
  * M is in 1/kg. A new problem has no rows. */
 typedef struct signorini_problem signorini_problem;
 
+/** How a matrix lies in memory. */
 typedef int32_t signorini_order;
 enum {
   SIGNORINI_COLUMN_MAJOR = 0, /**< dense: M_ij at [j n + i]; sparse: compressed columns (CSC) */
   SIGNORINI_ROW_MAJOR = 1     /**< dense: M_ij at [i n + j]; sparse: compressed rows (CSR) */
 };
 
+/** What the blocks of a factored problem are. */
 typedef int32_t signorini_mass_kind;
 enum {
   SIGNORINI_INVERSE_MASS = 0, /**< the blocks are W_k */
   SIGNORINI_MASS = 1          /**< the blocks are M_k = W_k^-1 */
 };
 
+/** What the rows of a friction cone must satisfy. */
 typedef int32_t signorini_friction_law;
 enum {
   SIGNORINI_COULOMB = 0,   /**< w + mu |w_T| n in the dual cone: Coulomb's law */
@@ -108,6 +115,7 @@ enum {
 /** The most rows of a dense M: n^2 fits 32 bits (17 GB). */
 #define SIGNORINI_MAX_DENSE_ROWS 46340
 
+/** A problem without rows. */
 SIGNORINI_API signorini_error signorini_problem_create(signorini_problem** problem);
 /** Null is allowed. */
 SIGNORINI_API void signorini_problem_destroy(signorini_problem* problem);
@@ -179,38 +187,38 @@ typedef struct signorini_certificate {
   double unit_free_residual; /**< max |min(M_ii z_i, w_i)| / |q| */
   double rounding_floor;     /**< what rounding z costs the unit-free residual */
   double natural_floor;      /**< what it costs the natural residual */
-  double backward_error;
-  double min_z;
-  double min_w;
-  double complementarity; /**< |z.w| */
-  double cone_violation;
-  int32_t worst_row; /**< of the unit-free residual, -1: none */
-  int32_t reserved;
+  double backward_error;     /**< small where z is exact for slightly other data */
+  double min_z;              /**< of the rows with lower bound 0 and the normals of cones */
+  double min_w;              /**< of those rows without an upper bound */
+  double complementarity;    /**< |z.w| */
+  double cone_violation;     /**< max(|z_T| - mu z_N, -z_N, 0); NaN without cones */
+  int32_t worst_row;         /**< of the unit-free residual, -1: none */
+  int32_t reserved;          /**< 0 */
 } signorini_certificate;
 
 /** What a solve cost; -1: the solver has no such thing. */
 typedef struct signorini_statistics {
-  int64_t iterations;
-  int64_t pivots;
-  int64_t factorizations;
-  int64_t refinements;
-  int64_t factor_bytes;
-  double solve_seconds;
+  int64_t iterations;     /**< sweeps or outer iterations */
+  int64_t pivots;         /**< exchanges of one basic variable */
+  int64_t factorizations; /**< of any matrix, from scratch */
+  int64_t refinements;    /**< steps of iterative refinement */
+  int64_t factor_bytes;   /**< held by the back-end of a sparse factorisation */
+  double solve_seconds;   /**< wall time, certificate included */
 } signorini_statistics;
 
 /** One solver's part in a solve that tried several ("auto"). Texts are valid as long as the result.
  */
 typedef struct signorini_attempt {
-  const char* solver;
-  const char* reason;
-  const char* detail;
-  double natural_residual;
-  double unit_free_residual;
-  double solve_seconds;
-  int64_t iterations;
-  int64_t pivots;
-  signorini_status status;
-  int32_t reserved;
+  const char* solver;        /**< its name */
+  const char* reason;        /**< why it was tried, one clause */
+  const char* detail;        /**< why it ended so; "": nothing to add */
+  double natural_residual;   /**< of its iterate */
+  double unit_free_residual; /**< of its iterate */
+  double solve_seconds;      /**< wall time */
+  int64_t iterations;        /**< sweeps or outer iterations, -1: none */
+  int64_t pivots;            /**< -1: none */
+  signorini_status status;   /**< how it ended */
+  int32_t reserved;          /**< 0 */
 } signorini_attempt;
 
 /** The solvers' names, null-terminated: "auto", "lemke", "interior-point", ... */
@@ -218,6 +226,7 @@ SIGNORINI_API const char* const* signorini_solver_names(void);
 
 /** @param name one of signorini_solver_names() */
 SIGNORINI_API signorini_error signorini_solver_create(const char* name, signorini_solver** solver);
+/** Null is allowed. */
 SIGNORINI_API void signorini_solver_destroy(signorini_solver* solver);
 
 /** Settings by name: "tolerance" (of both residuals, in (0, 1), default 1e-8), "max_iterations"
@@ -232,6 +241,7 @@ SIGNORINI_API signorini_error signorini_solver_set_text(signorini_solver* solver
 
 /** A result that is not run. */
 SIGNORINI_API signorini_error signorini_result_create(signorini_result** result);
+/** Null is allowed. */
 SIGNORINI_API void signorini_result_destroy(signorini_result* result);
 
 /** Solves. SIGNORINI_OK says that the solver ran; signorini_result_status() how it ended.
@@ -244,6 +254,7 @@ SIGNORINI_API signorini_error signorini_solver_solve(signorini_solver* solver,
                                                      const double* warm_start,
                                                      signorini_result* result);
 
+/** How the solve ended. */
 SIGNORINI_API signorini_status signorini_result_status(const signorini_result* result);
 /** The solver's name, with the variant that ended the solve: "auto: dantzig". */
 SIGNORINI_API const char* signorini_result_solver(const signorini_result* result);
@@ -254,6 +265,7 @@ SIGNORINI_API int64_t signorini_result_size(const signorini_result* result);
 /** z and w = M z + q, one number a row; like all that follows valid until the result's next solve.
  */
 SIGNORINI_API const double* signorini_result_z(const signorini_result* result);
+/** See signorini_result_z(). */
 SIGNORINI_API const double* signorini_result_w(const signorini_result* result);
 /** The ray on which the solve ended, one number a row, or null. */
 SIGNORINI_API const double* signorini_result_ray(const signorini_result* result);
@@ -263,17 +275,22 @@ SIGNORINI_API double signorini_result_ray_bound(const signorini_result* result);
 SIGNORINI_API signorini_error signorini_result_certificate(const signorini_result* result,
                                                            signorini_certificate* certificate,
                                                            size_t bytes);
+/** See signorini_result_certificate(). */
 SIGNORINI_API signorini_error signorini_result_statistics(const signorini_result* result,
                                                           signorini_statistics* statistics,
                                                           size_t bytes);
+/** How many solvers "auto" tried; 0 of other solvers. */
 SIGNORINI_API int64_t signorini_result_attempt_count(const signorini_result* result);
+/** The attempts in their order. @param number from 0 */
 SIGNORINI_API signorini_error signorini_result_attempt(const signorini_result* result,
                                                        int64_t number, signorini_attempt* attempt,
                                                        size_t bytes);
 /** With the setting "certify_islands": how many sets of rows nothing connects, else 0; the island
  * of every row (null without); the certificate of each by itself. */
 SIGNORINI_API int64_t signorini_result_island_count(const signorini_result* result);
+/** The island of every row, from 0; null without "certify_islands". */
 SIGNORINI_API const int32_t* signorini_result_island_of_row(const signorini_result* result);
+/** The certificate of one island by itself. @param island from 0 */
 SIGNORINI_API signorini_error
 signorini_result_island_certificate(const signorini_result* result, int64_t island,
                                     signorini_certificate* certificate, size_t bytes);
@@ -285,6 +302,7 @@ signorini_result_island_certificate(const signorini_result* result, int64_t isla
  * impulses and the new velocities. SI units, right-handed, world axes but where body axes are said.
  */
 
+/** What moves a body. */
 typedef int32_t signorini_body_kind;
 enum {
   SIGNORINI_DYNAMIC = 0,   /**< moved by forces */
@@ -292,6 +310,7 @@ enum {
   SIGNORINI_FIXED = 2      /**< never moves; its velocity must be 0 */
 };
 
+/** What a friction force is bounded by. */
 typedef int32_t signorini_friction_model;
 enum {
   SIGNORINI_PYRAMID = 0, /**< pyramid_sides sides inside the cone; the first along the slip */
@@ -301,20 +320,20 @@ enum {
 
 /** Fill it whole; its layout never changes. */
 typedef struct signorini_body {
-  signorini_body_kind kind;
-  int32_t reserved;
-  double mass;           /**< kg, > 0 (dynamic bodies) */
-  double inertia[9];     /**< about the centre of mass, body axes, symmetric, kg m^2 (dynamic) */
-  double position[3];    /**< of the centre of mass, m */
-  double orientation[4]; /**< unit quaternion w, x, y, z: body axes to world axes */
+  signorini_body_kind kind; /**< SIGNORINI_DYNAMIC, ... */
+  int32_t reserved;         /**< anything */
+  double mass;              /**< kg, > 0 (dynamic bodies) */
+  double inertia[9];        /**< about the centre of mass, body axes, symmetric, kg m^2 (dynamic) */
+  double position[3];       /**< of the centre of mass, m */
+  double orientation[4];    /**< unit quaternion w, x, y, z: body axes to world axes */
   double linear_velocity[3];  /**< of the centre of mass, after the step's forces, m/s */
   double angular_velocity[3]; /**< rad/s */
 } signorini_body;
 
 /** Fill it whole; its layout never changes. */
 typedef struct signorini_contact {
-  int32_t body_a; /**< numbers in the array of bodies, different, one at least dynamic */
-  int32_t body_b;
+  int32_t body_a;      /**< numbers in the array of bodies, different, one at least dynamic */
+  int32_t body_b;      /**< the other */
   double point_a[3];   /**< on the surface of A, m */
   double point_b[3];   /**< on the surface of B, m */
   double normal[3];    /**< unit, from B to A: an impulse f >= 0 pushes A along it, B against it */
@@ -328,17 +347,19 @@ typedef struct signorini_contact {
 
 /** What was solved for one island, a set of contacts that no dynamic body connects with others. */
 typedef struct signorini_island {
-  double unit_free_residual;
-  int32_t bodies; /**< dynamic ones */
-  int32_t contacts;
-  int32_t rows; /**< of its problem */
-  signorini_status status;
+  double unit_free_residual; /**< of its certificate */
+  int32_t bodies;            /**< dynamic ones */
+  int32_t contacts;          /**< in it */
+  int32_t rows;              /**< of its problem */
+  signorini_status status;   /**< how its solve ended */
 } signorini_island;
 
 typedef struct signorini_contact_solver signorini_contact_solver; /**< settings and memory */
-typedef struct signorini_contact_result signorini_contact_result;
+typedef struct signorini_contact_result signorini_contact_result; /**< what it found */
 
+/** With the default settings. */
 SIGNORINI_API signorini_error signorini_contact_solver_create(signorini_contact_solver** solver);
+/** Null is allowed. */
 SIGNORINI_API void signorini_contact_solver_destroy(signorini_contact_solver* solver);
 
 /** Settings by name: those of signorini_solver_set_number() but "certify_islands", and
@@ -354,7 +375,9 @@ SIGNORINI_API signorini_error signorini_contact_solver_set_text(signorini_contac
                                                                 const char* setting,
                                                                 const char* value);
 
+/** A result that is not run. */
 SIGNORINI_API signorini_error signorini_contact_result_create(signorini_contact_result** result);
+/** Null is allowed. */
 SIGNORINI_API void signorini_contact_result_destroy(signorini_contact_result* result);
 
 /** Finds all contact impulses at once: M (v+ - v) = J^T f, 0 <= f, J_n v+ + allowance >= 0,
@@ -368,8 +391,11 @@ SIGNORINI_API signorini_error signorini_contact_solver_solve(
 /** Of the islands the first that is not solved, else solved to rounding if one is. */
 SIGNORINI_API signorini_status
 signorini_contact_result_status(const signorini_contact_result* result);
+/** Whatever was done beside the plain scheme, one line; "": nothing to add. */
 SIGNORINI_API const char* signorini_contact_result_detail(const signorini_contact_result* result);
+/** The bodies that were handed in. */
 SIGNORINI_API int64_t signorini_contact_result_body_count(const signorini_contact_result* result);
+/** The contacts that were handed in. */
 SIGNORINI_API int64_t
 signorini_contact_result_contact_count(const signorini_contact_result* result);
 /** v+, 6 numbers a body: linear (of the centre of mass), angular. */
@@ -389,10 +415,12 @@ SIGNORINI_API signorini_error signorini_contact_result_certificate(
 /** Of that island; solve_seconds: of all. */
 SIGNORINI_API signorini_error signorini_contact_result_statistics(
     const signorini_contact_result* result, signorini_statistics* statistics, size_t bytes);
+/** Into how many islands the contacts fell. */
 SIGNORINI_API int64_t signorini_contact_result_island_count(const signorini_contact_result* result);
 /** The island of every contact. */
 SIGNORINI_API const int32_t* signorini_contact_result_island_of_contact(
     const signorini_contact_result* result);
+/** What was solved for an island. @param number from 0 */
 SIGNORINI_API signorini_error signorini_contact_result_island(
     const signorini_contact_result* result, int64_t number, signorini_island* island, size_t bytes);
 

@@ -116,4 +116,6 @@ string(REPLACE " " ";" c_requires "${c_requires}")
 list(REVERSE c_requires)
 signorini_pkg_config(c "the C API" PRIVATE_REQUIRES ${c_requires})
 
-include(SignoriniPackages)
+if(PROJECT_IS_TOP_LEVEL)
+  include(SignoriniPackages)
+endif()

@@ -67,7 +67,7 @@ function(signorini_library name)
   set_target_properties(${target} PROPERTIES
     EXPORT_NAME ${name} OUTPUT_NAME signorini-${name}
     VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR} POSITION_INDEPENDENT_CODE ON
-    INSTALL_RPATH $ORIGIN)
+    INSTALL_RPATH $ORIGIN DEFINE_SYMBOL "")
   if(BUILD_SHARED_LIBS AND UNIX AND NOT APPLE)
     set(map ${PROJECT_SOURCE_DIR}/cmake/signorini.map)
     if(ARG_EXPORTS)

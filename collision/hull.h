@@ -8,6 +8,7 @@ namespace signorini::collision {
 
 /// A convex polyhedron, immutable once made, shared by the shapes that show it.
 struct HullData {
+  /// An edge, once for both its directions.
   struct Edge {
     int from;
     int to;

@@ -14,6 +14,7 @@ namespace signorini::collision {
 /// Triangles that share an edge and lie in one plane to 1e-6 rad are one flat piece: the edges and
 /// vertices inside it are there for the storage only, and no contact ever sits on them.
 struct MeshData {
+  /// A triangle with what its neighbourhood makes of it.
   struct Triangle {
     std::array<int, 3> vertices;  ///< counter-clockwise seen from the front
     Vec3 normal;                  ///< unit, to the front

@@ -10,7 +10,7 @@
 namespace signorini::collision {
 
 /// Which colliders meet: those whose category is in the other's mask, both ways. SDFormat's
-/// <collide_bitmask> m, by which two collide if m_A & m_B is not 0, is category = mask = m.
+/// `collide_bitmask` m, by which two collide if m_A & m_B is not 0, is category = mask = m.
 struct CollisionFilter {
   std::uint32_t category = 1;        ///< what it is: any set of bits
   std::uint32_t mask = 0xffffffffU;  ///< what it meets; 0: nothing

@@ -14,6 +14,7 @@
 
 namespace signorini {
 
+/// Settings of ContactSolver.
 struct ContactSolverSettings {
   FrictionModel friction_model = FrictionModel::kCone;
   int pyramid_sides = 8;  ///< kPyramid: k, even, >= 4

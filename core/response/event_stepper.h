@@ -11,6 +11,7 @@
 
 namespace signorini {
 
+/// Settings of EventStepper.
 struct EventSettings {
   Vec3 gravity = Vec3(0.0, 0.0, -9.81);  ///< m/s^2, finite
   /// Of one segment: the turn of a body in rad, its way in m (of bodies that contact forces push);
@@ -46,6 +47,7 @@ enum class EventKind : std::uint8_t {
 };
 [[nodiscard]] std::string_view to_string(EventKind kind);
 
+/// One event of a run.
 struct Event {
   EventKind kind = EventKind::kImpact;
   double time = 0.0;  ///< s from the start of advance()
@@ -56,6 +58,7 @@ struct Event {
   double skipped_seconds = 0.0;
 };
 
+/// What EventStepper::advance() did.
 struct EventReport {
   /// kSolved: the whole duration. kIterationLimit: most_events. Else the first impact or
   /// resting-force problem that was not solved; the state is that of `time`.

@@ -42,6 +42,7 @@ enum class ImpactLaw : std::uint8_t {
 /// The text of a law, for example "sequential, repeated".
 [[nodiscard]] std::string_view to_string(ImpactLaw law);
 
+/// How resolve_impact() resolves.
 struct ImpactSettings {
   /// The only law with all five of break-away, symmetry, energy, momentum and one-sided impulses:
   /// docs/impact-laws.md has the table (`signorini-bench laws`). Where only the cost counts kNewton

@@ -17,6 +17,7 @@ struct Wrench {
   Vec3 torque = Vec3::Zero();
 };
 
+/// How resting forces are solved for.
 struct RestingSettings {
   /// The LCP solver, a name that lcp::make_solver() knows, and what it is told.
   std::string solver = "lemke";

@@ -17,6 +17,7 @@
 
 namespace signorini {
 
+/// Settings of TimeStepper.
 struct TimeStepSettings {
   double step = 1.0 / 240.0;             ///< h, s, finite and > 0
   Vec3 gravity = Vec3(0.0, 0.0, -9.81);  ///< m/s^2, finite

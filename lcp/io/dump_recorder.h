@@ -12,6 +12,7 @@
 
 namespace signorini::lcp {
 
+/// What DumpRecorder writes, and where.
 struct DumpSettings {
   enum class When : std::uint8_t { kAll, kUnsolved };
 
