@@ -21,7 +21,7 @@ constexpr std::int64_t kMostContacts = std::numeric_limits<std::int32_t>::max() 
 constexpr std::int64_t kMostBodies = std::numeric_limits<std::int32_t>::max() / 36;
 
 struct ContactSettings {
-  NamedSettings named;
+  NamedSettings named{.lcp = ContactSolverSettings{}.lcp, .recorder = {}};
   ContactSolverSettings solver;  // its lcp is named.lcp
   double touching_tolerance = 1e-6;
   double restitution_threshold = 0.0;
@@ -52,19 +52,18 @@ void ContactSettings::set_number(std::string_view name, double value) {
              std::to_string(solver.pyramid_sides));
     }
   } else if (name == "warm_start") {
-    if (value != 0.0 && value != 1.0) {
-      refuse("settings: warm_start: must be 0 or 1, got " + lcp::number_text(value));
-    }
-    solver.warm_start = value == 1.0;
+    solver.warm_start = flag(name, value);
   } else if (name == "touching_tolerance") {
     touching_tolerance = not_negative(name, value);
   } else if (name == "restitution_threshold") {
     restitution_threshold = not_negative(name, value);
-  } else if (name == "tolerance" || name == "max_iterations" || name == "time_limit") {
+  } else if (name == "tolerance" || name == "max_iterations" || name == "time_limit" ||
+             name == "quick_certificate") {
     named.set_number(name, value);
   } else {
     refuse("setting: \"" + std::string(name) +
-           "\" is not known; known: tolerance, max_iterations, time_limit, friction_model, "
+           "\" is not known; known: tolerance, max_iterations, time_limit, quick_certificate, "
+           "friction_model, "
            "pyramid_sides, warm_start, touching_tolerance, restitution_threshold");
   }
 }

@@ -39,6 +39,14 @@ int whole_number(std::string_view setting, double value) {
   return static_cast<int>(value);
 }
 
+bool flag(std::string_view setting, double value) {
+  if (value != 0.0 && value != 1.0) {
+    refuse("settings: " + std::string(setting) + ": must be 0 or 1, got " +
+           lcp::number_text(value));
+  }
+  return value == 1.0;
+}
+
 void NamedSettings::set_number(std::string_view name, double value) {
   lcp::SolverSettings changed = lcp;
   if (name == "tolerance") {
@@ -48,12 +56,11 @@ void NamedSettings::set_number(std::string_view name, double value) {
   } else if (name == "time_limit") {
     changed.time_limit = value;
   } else if (name == "certify_islands") {
-    if (value != 0.0 && value != 1.0) {
-      refuse("settings: certify_islands: must be 0 or 1, got " + lcp::number_text(value));
-    }
-    changed.certify_islands = value == 1.0;
+    changed.certify_islands = flag(name, value);
+  } else if (name == "quick_certificate") {
+    changed.quick_certificate = flag(name, value);
   } else {
-    refuse_name(name, "tolerance, max_iterations, time_limit, certify_islands");
+    refuse_name(name, "tolerance, max_iterations, time_limit, certify_islands, quick_certificate");
   }
   changed.validate();
   lcp = changed;

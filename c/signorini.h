@@ -231,7 +231,9 @@ SIGNORINI_API void signorini_solver_destroy(signorini_solver* solver);
 
 /** Settings by name: "tolerance" (of both residuals, in (0, 1), default 1e-8), "max_iterations"
  * (whole, in the solver's own unit; -1, the default: its own), "time_limit" (s, > 0, default inf),
- * "certify_islands" (0 or 1, default 0). A refused value leaves the one before. */
+ * "certify_islands" (0 or 1, default 0), "quick_certificate" (0 or 1, default 0: with it the
+ * certificate of a solved factored problem is a bound, at O(n)). A refused value leaves the one
+ * before. */
 SIGNORINI_API signorini_error signorini_solver_set_number(signorini_solver* solver,
                                                           const char* setting, double value);
 /** "dump": DIR[:OPTION[,OPTION]...], where every solve is written as a problem folder that
@@ -362,10 +364,11 @@ SIGNORINI_API signorini_error signorini_contact_solver_create(signorini_contact_
 /** Null is allowed. */
 SIGNORINI_API void signorini_contact_solver_destroy(signorini_contact_solver* solver);
 
-/** Settings by name: those of signorini_solver_set_number() but "certify_islands", and
- * "friction_model" (default SIGNORINI_CONE), "pyramid_sides" (even, >= 4, default 8), "warm_start"
- * (0 or 1, default 1: starts from the impulses of the solve before), "touching_tolerance" (m, >= 0,
- * default 1e-6), "restitution_threshold" (m/s, >= 0, default 0: slower contacts do not bounce). */
+/** Settings by name: those of signorini_solver_set_number() but "certify_islands"
+ * ("quick_certificate" is 1 by default), and "friction_model" (default SIGNORINI_CONE),
+ * "pyramid_sides" (even, >= 4, default 8), "warm_start" (0 or 1, default 1: starts from the
+ * impulses of the solve before), "touching_tolerance" (m, >= 0, default 1e-6),
+ * "restitution_threshold" (m/s, >= 0, default 0: slower contacts do not bounce). */
 SIGNORINI_API signorini_error signorini_contact_solver_set_number(signorini_contact_solver* solver,
                                                                   const char* setting,
                                                                   double value);

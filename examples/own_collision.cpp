@@ -1,5 +1,5 @@
-// Your own collision detection, as a ContactFinder: three balls, one above the other, fall on a floor
-// that the library knows nothing of, and come to rest on each other.
+// Your own collision detection, as a ContactFinder: three balls, one above the other, fall on a
+// floor that the library knows nothing of, and come to rest on each other.
 #include <signorini/core/response/time_stepper.h>
 
 #include <iostream>

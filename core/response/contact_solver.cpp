@@ -2,6 +2,7 @@
 #include <signorini/core/response/assembly.h>
 #include <signorini/core/response/contact_islands.h>
 #include <signorini/core/response/contact_solver.h>
+#include <signorini/core/response/position_projection.h>
 #include <signorini/core/response/set_impact.h>
 #include <signorini/core/response/tangent_rows.h>
 #include <signorini/lcp/certificate.h>
@@ -175,8 +176,9 @@ lcp::Vector allowances(const Bodies& bodies, const State& state, const ContactSe
     const double e = contacts[i].material.restitution;
     const bool bounces = contacts[i].gap <= touching_tolerance &&
                          d_dot[static_cast<lcp::Index>(i)] < -restitution_threshold;
+    const double gap = contacts[i].gap > kToleratedOverlap ? contacts[i].gap : 0.0;
     allowance[static_cast<lcp::Index>(i)] =
-        bounces ? e * d_dot[static_cast<lcp::Index>(i)] : std::max(contacts[i].gap, 0.0) / h;
+        bounces ? e * d_dot[static_cast<lcp::Index>(i)] : gap / h;
   }
   return allowance;
 }

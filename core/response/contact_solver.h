@@ -20,7 +20,7 @@ struct ContactSolverSettings {
   int pyramid_sides = 8;  ///< kPyramid: k, even, >= 4
   /// A name that lcp::make_solver() knows; with kCone it must take cones.
   std::string solver = "auto";
-  lcp::SolverSettings lcp = {.tolerance = 1e-8};
+  lcp::SolverSettings lcp = {.tolerance = 1e-8, .quick_certificate = true};
   /// Starts from the impulses of the solve before: a contact is known again by its bodies and its
   /// feature_id.
   bool warm_start = true;
@@ -85,10 +85,11 @@ class ContactSolver {
   lcp::Vector start_;
 };
 
-/// The allowance of every contact for a step of h seconds (h > 0), m/s: max(gap, 0)/h, so that a
-/// gap may just close; e d' (negative: it opens) at contacts with gap <= touching_tolerance that
-/// approach faster than restitution_threshold. TimeStepper's rule, but that it leaves contacts out
-/// which are apart and about to bounce.
+/// The allowance of every contact for a step of h seconds (h > 0), m/s: gap/h, so that a gap may
+/// just close (0 for gaps up to kToleratedOverlap of position_projection.h); e d' (negative: it
+/// opens) at contacts with gap <= touching_tolerance that approach faster than
+/// restitution_threshold. TimeStepper's rule, but that it leaves contacts out which are apart and
+/// about to bounce.
 /// @param state its velocities give d'; TimeStepper takes those before the step's forces
 /// @param touching_tolerance m, >= 0. @param restitution_threshold m/s, >= 0; after the forces: at
 /// least the speed that they give in a step, or resting contacts bounce

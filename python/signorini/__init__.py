@@ -336,7 +336,8 @@ class Solver:
     """One solver with its settings and workspace. name: see solver_names().
 
     tolerance: of both residuals, in (0, 1). max_iterations: in the solver's own unit, -1: its own
-    default. time_limit: seconds. dump: a folder DIR[:OPTIONS] to which every solve is written, for
+    default. time_limit: seconds. certify_islands: one certificate for every set of rows that nothing
+    connects, too. quick_certificate: that of a solved factored problem is a bound, at O(n). dump: a folder DIR[:OPTIONS] to which every solve is written, for
     signorini-solve to replay (docs/problem-folders.md).
     """
 
@@ -348,6 +349,7 @@ class Solver:
         max_iterations: int = -1,
         time_limit: float = float("inf"),
         certify_islands: bool = False,
+        quick_certificate: bool = False,
         dump: str = "",
     ) -> None:
         self._handle = _signorini.Solver(name)
@@ -356,6 +358,7 @@ class Solver:
         self._handle.set_number("max_iterations", max_iterations)
         self._handle.set_number("time_limit", time_limit)
         self._handle.set_number("certify_islands", certify_islands)
+        self._handle.set_number("quick_certificate", quick_certificate)
         if dump:
             self._handle.set_text("dump", dump)
 
@@ -522,6 +525,7 @@ class ContactSolver:
         tolerance: float = 1e-8,
         max_iterations: int = -1,
         time_limit: float = float("inf"),
+        quick_certificate: bool = True,
         dump: str = "",
     ) -> None:
         if friction_model not in self._MODELS:
@@ -538,6 +542,7 @@ class ContactSolver:
         self._handle.set_number("tolerance", tolerance)
         self._handle.set_number("max_iterations", max_iterations)
         self._handle.set_number("time_limit", time_limit)
+        self._handle.set_number("quick_certificate", quick_certificate)
         if dump:
             self._handle.set_text("dump", dump)
 

@@ -269,7 +269,8 @@ TEST(CApi, EverySolverIsMadeAndEverySettingIsReadAndRefused) {
                                     {"max_iterations", 1e300},
                                     {"max_iterations", kNaN},
                                     {"time_limit", 0.0},
-                                    {"certify_islands", 2.0}}) {
+                                    {"certify_islands", 2.0},
+                                    {"quick_certificate", kNaN}}) {
     expect_refused(signorini_solver_set_number(solver.get(), name, value), name);
   }
   expect_refused(signorini_solver_set_number(solver.get(), "tolerence", 1.0), "tolerence");

@@ -82,6 +82,8 @@ class Solves(unittest.TestCase):
         for keywords in ({"mass": masses}, {"inverse_mass": [np.linalg.inv(m) for m in masses]}):
             for given in (J, J.toarray(), J.tocsc()):
                 problem = signorini.Problem.factored(given, q, compliance=c, **keywords)
+                quick = signorini.Solver(quick_certificate=True).solve(problem)
+                self.assert_solution(quick, A, q)
                 self.assertIsNone(problem.matrix)
                 self.assertEqual(len(problem), 9)
                 self.assert_solution(signorini.Solver().solve(problem), A, q)
