@@ -38,6 +38,10 @@ class AlartCurnier::Workspace {
     return *factorizations_ >= most_steps_ || deadline_->passed();
   }
   double error_of(const Vector& x);
+  void finish(Result& result) const {
+    result.z = best_.z();
+    result.statistics.factor_bytes = groups_.factor_bytes();
+  }
 
   const Deadline* deadline_ = nullptr;
   int* factorizations_ = nullptr;
@@ -111,7 +115,7 @@ AlartCurnier::Workspace::Inner AlartCurnier::Workspace::newton(const AlartCurnie
 Status AlartCurnier::Workspace::solve(const Problem& problem, const AlartCurnierSettings& settings,
                                       const Vector* warm_start, const Deadline& deadline,
                                       Result& result) {
-  result.statistics = {.iterations = 0, .factorizations = 0};
+  result.statistics = {.iterations = 0, .factorizations = 0, .factor_bytes = 0};
   deadline_ = &deadline;
   factorizations_ = &result.statistics.factorizations;
   most_steps_ =
@@ -138,7 +142,7 @@ Status AlartCurnier::Workspace::solve(const Problem& problem, const AlartCurnier
     }
     if (inner.steps == 0 && inner.converged) {  // F's units hide an error that the certificate sees
       if (tolerance <= kFinestTolerance) {
-        result.z = best_.z();
+        finish(result);
         return Status::kStalled;
       }
       strictness *= 1e-3;
@@ -156,12 +160,12 @@ Status AlartCurnier::Workspace::solve(const Problem& problem, const AlartCurnier
     }
     error = std::min(error, after);
     if (alpha >= kLargestAlpha && ++stalled > 3) {
-      result.z = best_.z();
+      finish(result);
       return Status::kStalled;
     }
     alpha = std::min(3.0 * alpha, kLargestAlpha);
   }
-  result.z = best_.z();
+  finish(result);
   return deadline.passed() ? Status::kTimeLimit
                            : (solved() ? Status::kStalled : Status::kIterationLimit);
 }

@@ -39,7 +39,8 @@ struct AlartCurnierSettings : SolverSettings {
 /// kTimeLimit, kStalled (alpha at its largest and no progress); z is the best iterate by
 /// certificate.
 /// Cost: one sparse LU a Newton step (dense up to NewtonSystem::kDenseRows active rows);
-/// statistics: iterations are proximal steps, factorizations Newton steps.
+/// statistics: iterations are proximal steps, factorizations Newton steps, factor_bytes what the
+/// sparse LU held, which is all that a problem of a size it has seen before allocates.
 class AlartCurnier : public Solver {
  public:
   /// @throws std::invalid_argument for a setting out of its range.

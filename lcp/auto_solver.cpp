@@ -172,6 +172,8 @@ bool AutoSolver::attempt(const Problem& problem, const Step& step, int max_itera
   add(result.statistics.pivots, one_.statistics.pivots);
   add(result.statistics.factorizations, one_.statistics.factorizations);
   add(result.statistics.refinements, one_.statistics.refinements);
+  result.statistics.factor_bytes =
+      std::max(result.statistics.factor_bytes, one_.statistics.factor_bytes);
   if (one_.ray.size() > 0 && one_.ray_bound > result.ray_bound) {
     result.ray = one_.ray;
     result.ray_bound = one_.ray_bound;

@@ -41,8 +41,8 @@ struct AutoSettings : SolverSettings {
 /// point only from one with residuals below 1e-4, being slower from a worse one than from none).
 /// result.attempts lists every one tried, with the reason, status, residuals, cost and time;
 /// result.solver names the one whose iterate is returned ("auto: pgs"), and the statistics are sums
-/// over the attempts. If none solves, z is the best iterate, and a ray that any of them proved is
-/// kept.
+/// over the attempts (factor_bytes the largest). If none solves, z is the best iterate, and a ray
+/// that any of them proved is kept.
 class AutoSolver : public Solver {
  public:
   /// @throws std::invalid_argument for a setting out of its range.

@@ -2,7 +2,6 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <map>
 #include <span>
 #include <utility>
 
@@ -14,71 +13,79 @@ using Entries = std::span<const WhitenedRows::Entry>;
 void BodyNewtonSystem::set(const WhitenedRows& rows, const AlartCurnierFunction& function) {
   rows_ = &rows;
   function_ = &function;
+  lu_.reset_bytes();
+  find_pairs();
   set_pattern();
-  if (H_.rows() > 0) {
-    lu_.isSymmetric(true);
-    lu_.setPivotThreshold(0.1);
-    lu_.analyzePattern(H_);
+  if (rows.degrees_of_freedom() > 0) {
+    lu_.prefer_diagonal();
+    lu_.analyse(matrix());
   }
 }
 
-/// One dense block for every two bodies that share a group, and the diagonal.
-void BodyNewtonSystem::set_pattern() {
-  struct Body {
-    int dimension = 0;
-    int column_length = 0;
-    std::map<int, int> row_offset;  // of the bodies it meets, by their offsets in u
-  };
-  std::map<int, Body> bodies;  // by offset in u
-  rows_->visit_groups([&bodies](Entries entries, const double*, int) {
-    for (const auto& e : entries) {
-      if (e.dimension == 0) {  // no row moves this body; its offset is the next one's
-        continue;
-      }
-      Body& body = bodies[e.offset];
-      body.dimension = e.dimension;
-      for (const auto& f : entries) {
-        if (f.dimension > 0) {
-          body.row_offset[f.offset] = f.dimension;
+/// Bodies that no row moves have no dimension, and are in no pair.
+void BodyNewtonSystem::find_pairs() {
+  bodies_.clear();
+  pairs_.clear();
+  rows_->visit_groups([this](Entries entries, const double*, int) {
+    for (const auto& f : entries) {
+      bodies_.resize(std::max<std::size_t>(bodies_.size(), f.body + 1), Body{0, 0});
+      bodies_[f.body] = {f.dimension, f.offset};
+      for (const auto& e : entries) {
+        if (e.dimension > 0 && f.dimension > 0) {
+          pairs_.emplace_back(f.body, e.body);
         }
       }
     }
   });
-  const int n = static_cast<int>(rows_->degrees_of_freedom());
-  std::vector<int> outer(1, 0);
-  std::vector<int> inner;
-  diagonal_.resize(n);
-  for (auto& [offset, body] : bodies) {
-    for (auto& [other, start] : body.row_offset) {  // dimension becomes where it starts
-      const int dimension = start;
-      start = body.column_length;
-      body.column_length += dimension;
+  std::sort(pairs_.begin(), pairs_.end());
+  pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+}
+
+int BodyNewtonSystem::find_start(const std::pair<int, int>& bodies) const {
+  return pair_start_[std::lower_bound(pairs_.begin(), pairs_.end(), bodies) - pairs_.begin()];
+}
+
+/// One dense block for every pair.
+void BodyNewtonSystem::set_pattern() {
+  outer_.assign(1, 0);
+  inner_.clear();
+  pair_start_.clear();
+  diagonal_.resize(rows_->degrees_of_freedom());
+  for (std::size_t first = 0, last = 0; first < pairs_.size(); first = last) {
+    const Body& column = bodies_[pairs_[first].first];
+    int length = 0;
+    for (; last < pairs_.size() && pairs_[last].first == pairs_[first].first; ++last) {
+      pair_start_.push_back(length);
+      length += bodies_[pairs_[last].second].dimension;
     }
-    for (int k = 0; k < body.dimension; ++k) {
-      for (const auto& [other, start] : body.row_offset) {
-        for (int i = 0; i < bodies[other].dimension; ++i) {
-          if (other + i == offset + k) {
-            diagonal_[offset + k] = static_cast<int>(inner.size());
+    for (int c = column.offset; c < column.offset + column.dimension; ++c) {
+      for (std::size_t k = first; k < last; ++k) {
+        const Body& row = bodies_[pairs_[k].second];
+        for (int r = row.offset; r < row.offset + row.dimension; ++r) {
+          if (r == c) {
+            diagonal_[c] = static_cast<int>(inner_.size());
           }
-          inner.push_back(other + i);
+          inner_.push_back(r);
         }
       }
-      outer.push_back(static_cast<int>(inner.size()));
+      outer_.push_back(static_cast<int>(inner_.size()));
     }
   }
+  values_.assign(inner_.size(), 0.0);
   row_offset_.clear();
-  rows_->visit_groups([&](Entries entries, const double*, int) {
+  rows_->visit_groups([this](Entries entries, const double*, int) {
     for (const auto& f : entries) {
       for (const auto& e : entries) {
         const bool meets = e.dimension > 0 && f.dimension > 0;
-        row_offset_.push_back(meets ? bodies[f.offset].row_offset[e.offset] : 0);
+        row_offset_.push_back(meets ? find_start({f.body, e.body}) : 0);
       }
     }
   });
-  H_.resize(n, n);
-  H_.resizeNonZeros(static_cast<Index>(inner.size()));
-  std::copy(outer.begin(), outer.end(), H_.outerIndexPtr());
-  std::copy(inner.begin(), inner.end(), H_.innerIndexPtr());
+}
+
+SparseLu::View BodyNewtonSystem::matrix() const {
+  const Index n = rows_->degrees_of_freedom();
+  return {n, n, static_cast<Index>(inner_.size()), outer_.data(), inner_.data(), values_.data()};
 }
 
 bool BodyNewtonSystem::invert_blocks(const std::vector<Block>& A, const std::vector<Block>& B,
@@ -103,10 +110,9 @@ bool BodyNewtonSystem::invert_blocks(const std::vector<Block>& A, const std::vec
 
 /// H = I + G^T D G.
 void BodyNewtonSystem::assemble(const std::vector<Block>& B) {
-  double* values = H_.valuePtr();
-  std::fill(values, values + H_.nonZeros(), 0.0);
+  std::fill(values_.begin(), values_.end(), 0.0);
   for (const int position : diagonal_) {
-    values[position] = 1.0;
+    values_[position] = 1.0;
   }
   std::size_t g = 0;
   std::size_t pair = 0;
@@ -128,7 +134,7 @@ void BodyNewtonSystem::assemble(const std::vector<Block>& B) {
         for (const auto& e : entries) {
           const int start = row_offset_[at++];
           for (int c = 0; c < f.dimension; ++c) {
-            double* column = values + H_.outerIndexPtr()[f.offset + c] + start;
+            double* column = values_.data() + outer_[f.offset + c] + start;
             for (int i = 0; i < d; ++i) {
               const double right = product_[i * width + f.column + c];
               const double* left = G + i * width + e.column;
@@ -155,8 +161,7 @@ bool BodyNewtonSystem::factor(const std::vector<Block>& A, const std::vector<Blo
     return true;
   }
   assemble(B);
-  lu_.factorize(H_);
-  return lu_.info() == Eigen::Success;
+  return lu_.factor(matrix());
 }
 
 /// out = blocks in.
@@ -181,7 +186,8 @@ bool BodyNewtonSystem::solve(const Vector& F, Vector& dx) {
   if (rows_->degrees_of_freedom() > 0) {
     apply(inverse_, F, h_);
     rows_->transpose_times(h_, y_);
-    y_ = lu_.solve(-y_).eval();
+    y_ = -y_;
+    lu_.solve({y_.data(), static_cast<std::size_t>(y_.size())});
     rows_->times(y_, gy_);
     apply(*B_, gy_, h_);
     h_ += F;

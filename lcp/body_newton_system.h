@@ -1,9 +1,10 @@
 #pragma once
 
 #include <signorini/lcp/alart_curnier_function.h>
+#include <signorini/lcp/sparse_lu.h>
 #include <signorini/lcp/whitened_rows.h>
 
-#include <Eigen/SparseLU>
+#include <utility>
 #include <vector>
 
 namespace signorini::lcp {
@@ -14,7 +15,7 @@ namespace signorini::lcp {
 ///     (I + G^T D G) y = -G^T K^-1 F,     dx = -K^-1 (F + B G y).
 ///
 /// The matrix has a row a degree of freedom of the bodies, however many contacts there are, one
-/// pattern for all steps, and is factored by a sparse LU (Eigen), since D is not symmetric where
+/// pattern for all steps, and is factored by SparseLu, since D is not symmetric where
 /// contacts slide. alpha > 0 keeps K invertible; the numbers of dx lose digits as alpha goes to 0.
 class BodyNewtonSystem {
  public:
@@ -28,8 +29,14 @@ class BodyNewtonSystem {
   /// @return false if the step is not finite; dx is then of no use.
   [[nodiscard]] bool solve(const Vector& F, Vector& dx);
 
+  /// The most that the back-end held since set().
+  [[nodiscard]] std::int64_t factor_bytes() const { return lu_.bytes(); }
+
  private:
+  void find_pairs();
+  [[nodiscard]] int find_start(const std::pair<int, int>& bodies) const;
   void set_pattern();
+  [[nodiscard]] SparseLu::View matrix() const;
   [[nodiscard]] bool invert_blocks(const std::vector<AlartCurnierFunction::Block>& A,
                                    const std::vector<AlartCurnierFunction::Block>& B, double alpha);
   void assemble(const std::vector<AlartCurnierFunction::Block>& B);
@@ -40,13 +47,23 @@ class BodyNewtonSystem {
   const AlartCurnierFunction* function_ = nullptr;
   const std::vector<AlartCurnierFunction::Block>* B_ = nullptr;
   std::vector<AlartCurnierFunction::Block> inverse_;  // K^-1
-  SparseMatrix H_;
+  struct Body {
+    int dimension;
+    int offset;  // in u
+  };
+  std::vector<Body> bodies_;
+  // Two bodies that share a group, that of the columns first; sorted, and where the rows of the
+  // second start in the columns of the first.
+  std::vector<std::pair<int, int>> pairs_;
+  std::vector<int> pair_start_;
+  std::vector<int> outer_, inner_;  // the pattern of H
+  std::vector<double> values_;
   std::vector<int> row_offset_;  // of a pair of entries of a group: where the first body's rows
                                  // start in the columns of the second
   std::vector<int> diagonal_;    // position of the diagonal in every column
   std::vector<double> product_;  // D G of a group
   Vector h_, y_, gy_;
-  Eigen::SparseLU<SparseMatrix, Eigen::COLAMDOrdering<int>> lu_;
+  SparseLu lu_;
 };
 
 }  // namespace signorini::lcp

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 #include <string>
 
@@ -41,6 +42,7 @@ class ConeInteriorPoint::Workspace {
   std::vector<AlartCurnierFunction::Block> A_, B_;
   std::vector<AlartCurnierFunction::Coupling> no_couplings_;
   Vector x_, u_, F_, dx_, du_, z_;
+  std::unique_ptr<AlartCurnier> polisher_;
   Result polished_;
 };
 
@@ -165,26 +167,31 @@ Status ConeInteriorPoint::Workspace::follow_path(const Deadline& deadline, Stati
 /// Alart-Curnier from the best iterate.
 Status ConeInteriorPoint::Workspace::polish(const Problem& problem, const Deadline& deadline,
                                             Statistics& statistics) {
-  AlartCurnierSettings settings;
-  static_cast<SolverSettings&>(settings) = settings_;
-  settings.recorder = nullptr;
-  settings.certify_islands = false;
-  settings.max_iterations = settings_.polish_steps;
-  settings.proximal = 1e-6;
-  settings.time_limit = settings_.time_limit - deadline.elapsed_seconds();
-  if (!(settings.time_limit > 0.0)) {
+  const double time_left = settings_.time_limit - deadline.elapsed_seconds();
+  if (!(time_left > 0.0)) {
     return Status::kTimeLimit;
   }
+  if (polisher_ == nullptr || std::isfinite(time_left)) {
+    AlartCurnierSettings settings;
+    static_cast<SolverSettings&>(settings) = settings_;
+    settings.recorder = nullptr;
+    settings.certify_islands = false;
+    settings.max_iterations = settings_.polish_steps;
+    settings.proximal = 1e-6;
+    settings.time_limit = time_left;
+    polisher_ = std::make_unique<AlartCurnier>(settings);
+  }
   z_ = best_.z();
-  AlartCurnier(settings).solve(problem, polished_, &z_);
+  polisher_->solve(problem, polished_, &z_);
   best_.offer(polished_.z);
   statistics.factorizations += polished_.statistics.factorizations;
+  statistics.factor_bytes = std::max(statistics.factor_bytes, polished_.statistics.factor_bytes);
   return is_solved(polished_.status) ? Status::kStalled : polished_.status;
 }
 
 Status ConeInteriorPoint::Workspace::solve(const Problem& problem, const Vector* warm_start,
                                            const Deadline& deadline, Result& result) {
-  result.statistics = {.iterations = 0, .factorizations = 0};
+  result.statistics = {.iterations = 0, .factorizations = 0, .factor_bytes = 0};
   best_.reset(problem);
   if (warm_start != nullptr) {
     best_.offer(*warm_start);
@@ -193,6 +200,7 @@ Status ConeInteriorPoint::Workspace::solve(const Problem& problem, const Vector*
   if (!solved()) {
     start(problem);
     ending = follow_path(deadline, result.statistics);
+    result.statistics.factor_bytes = groups_.factor_bytes();
   }
   const bool limited = ending == Status::kIterationLimit || ending == Status::kTimeLimit;
   if (!solved() && !limited && settings_.polish_steps > 0) {

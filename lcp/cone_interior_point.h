@@ -51,7 +51,9 @@ struct ConeInteriorPointSettings : SolverSettings {
 /// certificate. A warm start is tried as an answer, and is where the polish starts if the path
 /// finds nothing better; the path always starts cold. Cost: one sparse LU a step, in body space of
 /// I + G^T D G for a factored M, otherwise as NewtonSystem does it, and two solves with it;
-/// statistics: iterations are interior point steps, factorizations those and the polish's.
+/// statistics: iterations are interior point steps, factorizations those and the polish's,
+/// factor_bytes what the sparse LU held, which is all that a problem of a size it has seen before
+/// allocates (unless time_limit is set: the polish then gets what is left of it).
 class ConeInteriorPoint : public Solver {
  public:
   /// @throws std::invalid_argument for a setting out of its range.

@@ -8,14 +8,16 @@
 namespace signorini::lcp {
 namespace {
 
-/// The block of M at `first`, d x d.
-Eigen::Matrix3d block_of(const Matrix& M, int first, int d) {
+/// The block of M at `first`, d x d. @param room gives memory for so many doubles
+template <typename Room>
+Eigen::Matrix3d block_of(const Matrix& M, int first, int d, Room) {
   Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
   block.topLeftCorner(d, d) = M.block(first, first, d, d);
   return block;
 }
 
-Eigen::Matrix3d block_of(const SparseMatrix& M, int first, int d) {
+template <typename Room>
+Eigen::Matrix3d block_of(const SparseMatrix& M, int first, int d, Room) {
   Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
   for (int j = 0; j < d; ++j) {
     for (int i = 0; i < d; ++i) {
@@ -25,19 +27,14 @@ Eigen::Matrix3d block_of(const SparseMatrix& M, int first, int d) {
   return block;
 }
 
-Eigen::Matrix3d block_of(const FactoredMatrix& M, int first, int d) {
+template <typename Room>
+Eigen::Matrix3d block_of(const FactoredMatrix& M, int first, int d, Room room) {
   Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
-  std::array<double, 6> of_rigid_body{};  // no allocation for these
-  std::vector<double> of_large_block;
   for (int i = 0; i < d; ++i) {
     block(i, i) = M.compliance(first + i);
     for (const FactoredMatrix::Entry& a : M.entries(first + i)) {
       const int size = M.mass.dimension(a.block);
-      double* moved = of_rigid_body.data();
-      if (size > static_cast<int>(of_rigid_body.size())) {
-        of_large_block.resize(size);
-        moved = of_large_block.data();
-      }
+      double* moved = room(size);
       M.mass.apply_inverse(a.block, M.values(a), moved);
       for (int j = 0; j < d; ++j) {
         for (const FactoredMatrix::Entry& b : M.entries(first + j)) {
@@ -72,18 +69,39 @@ double largest_eigenvalue(const Eigen::Matrix3d& block, int d) {
 }
 
 Eigen::Matrix3d diagonal_block(const MatrixForm& M, int first, int d) {
-  return std::visit([=](const auto& form) { return block_of(form, first, d); }, M);
+  std::array<double, 6> of_rigid_body;
+  std::vector<double> of_large_block;
+  const auto room = [&](int size) {
+    if (size <= static_cast<int>(of_rigid_body.size())) {
+      return of_rigid_body.data();
+    }
+    of_large_block.resize(size);
+    return of_large_block.data();
+  };
+  return std::visit([&](const auto& form) { return block_of(form, first, d, room); }, M);
 }
 
-void group_scale(const Problem& problem, Vector& s) {
-  diagonal(problem.M, s);
-  for (double& value : s) {
-    value = value > 0.0 ? 1.0 / std::sqrt(value) : 1.0;
-  }
-  for (const FrictionCone& cone : problem.cones) {
-    const Eigen::Matrix3d block = diagonal_block(problem.M, cone.normal_row, cone.dimension);
-    s.segment(cone.normal_row, cone.dimension)
-        .setConstant(1.0 / std::sqrt(largest_eigenvalue(block, cone.dimension)));
+Eigen::Matrix3d diagonal_block(const MatrixForm& M, int first, int d, Vector& work) {
+  const auto room = [&work](int size) {
+    if (work.size() < size) {
+      work.resize(size);
+    }
+    return work.data();
+  };
+  return std::visit([&](const auto& form) { return block_of(form, first, d, room); }, M);
+}
+
+void group_scale(const Problem& problem, Vector& s, Vector& work) {
+  const int n = static_cast<int>(problem.size());
+  s.resize(n);
+  std::size_t cone = 0;
+  for (int i = 0; i < n;) {
+    const bool starts_cone = cone < problem.cones.size() && problem.cones[cone].normal_row == i;
+    const int d = starts_cone ? problem.cones[cone++].dimension : 1;
+    const Eigen::Matrix3d block = diagonal_block(problem.M, i, d, work);
+    const double size = d > 1 ? largest_eigenvalue(block, d) : block(0, 0);
+    s.segment(i, d).setConstant(size > 0.0 ? 1.0 / std::sqrt(size) : 1.0);
+    i += d;
   }
 }
 

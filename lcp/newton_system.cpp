@@ -10,6 +10,7 @@ using Coupling = AlartCurnierFunction::Coupling;
 void NewtonSystem::set(const SparseMatrix& W, const AlartCurnierFunction& function) {
   W_ = &W;
   function_ = &function;
+  sparse_lu_.reset_bytes();
   const std::size_t n = static_cast<std::size_t>(W.rows());
   active_row_.resize(n);
   couplings_of_column_.resize(n);
@@ -101,10 +102,10 @@ bool NewtonSystem::factor_active() {
     }
     return dense_lu_.factor();
   }
-  const Eigen::Map<const SparseMatrix> matrix(n, n, static_cast<Index>(values_.size()),
-                                              outer_.data(), inner_.data(), values_.data());
-  sparse_lu_.compute(matrix);
-  return sparse_lu_.info() == Eigen::Success;
+  const SparseLu::View matrix(n, n, static_cast<Index>(values_.size()), outer_.data(),
+                              inner_.data(), values_.data());
+  sparse_lu_.analyse(matrix);
+  return sparse_lu_.factor(matrix);
 }
 
 bool NewtonSystem::factor(const std::vector<Block>& A, const std::vector<Block>& B,
@@ -152,8 +153,7 @@ bool NewtonSystem::solve(const Vector& F, Vector& dx) {
   if (n <= kDenseRows) {
     dense_lu_.solve(right_.data());
   } else {
-    Eigen::Map<Vector> right(right_.data(), n);
-    right = sparse_lu_.solve(right).eval();
+    sparse_lu_.solve(right_);
   }
   for (int k = 0; k < n; ++k) {
     dx[active_rows_[k]] = right_[k];

@@ -2,8 +2,8 @@
 
 #include <signorini/lcp/alart_curnier_function.h>
 #include <signorini/lcp/dense_lu.h>
+#include <signorini/lcp/sparse_lu.h>
 
-#include <Eigen/SparseLU>
 #include <vector>
 
 namespace signorini::lcp {
@@ -13,7 +13,7 @@ namespace signorini::lcp {
 ///     (A + B (W + alpha I)) dx = -F.
 ///
 /// Groups with B = 0, where A must be I, are solved by hand; the rest is factored, dense up to
-/// kDenseRows rows, sparse (LU with partial pivoting, Eigen) above.
+/// kDenseRows rows, sparse (SparseLu) above.
 class NewtonSystem {
  public:
   static constexpr int kDenseRows = 120;
@@ -29,6 +29,9 @@ class NewtonSystem {
                             double alpha);
   /// @return false if the step is not finite; dx is then of no use.
   [[nodiscard]] bool solve(const Vector& F, Vector& dx);
+
+  /// The most that the back-end held since set().
+  [[nodiscard]] std::int64_t factor_bytes() const { return sparse_lu_.bytes(); }
 
  private:
   void find_active(const std::vector<AlartCurnierFunction::Block>& B,
@@ -55,7 +58,7 @@ class NewtonSystem {
   std::vector<double> right_;
   Vector w_;
   DenseLu dense_lu_;
-  Eigen::SparseLU<SparseMatrix, Eigen::COLAMDOrdering<int>> sparse_lu_;
+  SparseLu sparse_lu_;
 };
 
 }  // namespace signorini::lcp

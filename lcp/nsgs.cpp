@@ -3,6 +3,7 @@
 #include <signorini/lcp/friction_cone.h>
 #include <signorini/lcp/group_scale.h>
 #include <signorini/lcp/nsgs.h>
+#include <signorini/lcp/sparse_form.h>
 
 #include <algorithm>
 #include <cmath>
@@ -37,9 +38,11 @@ class Nsgs::Workspace {
   const Problem* problem_ = nullptr;
   const FactoredMatrix* factored_ = nullptr;  // or
   SparseMatrix M_;
+  SparseForm sparse_form_;
   AlartCurnierFunction function_;        // for its groups, unscaled
   std::vector<Eigen::Matrix3d> blocks_;  // M_cc of every group
   Vector scale_;                         // 1 / sqrt(D)
+  Vector ones_, work_;
   Vector z_;
   Vector w_;                      // M z of a given M
   std::vector<double> impulse_;   // J^T z
@@ -51,17 +54,16 @@ class Nsgs::Workspace {
 void Nsgs::Workspace::set(const Problem& problem) {
   problem_ = &problem;
   factored_ = std::get_if<FactoredMatrix>(&problem.M);
-  if (const auto* dense = std::get_if<Matrix>(&problem.M)) {
-    M_ = dense->sparseView();
-  } else if (factored_ == nullptr) {
-    M_ = std::get<SparseMatrix>(problem.M);
+  if (factored_ == nullptr) {
+    sparse_form_.form(problem.M, M_);
   }
-  group_scale(problem, scale_);
-  function_.set(problem, Vector::Ones(problem.size()), 1.0);
+  group_scale(problem, scale_, work_);
+  ones_.setOnes(problem.size());
+  function_.set(problem, ones_, 1.0);
   blocks_.resize(function_.groups().size());
   for (std::size_t g = 0; g < blocks_.size(); ++g) {
     const Group& group = function_.groups()[g];
-    blocks_[g] = diagonal_block(problem.M, group.first, group.dimension);
+    blocks_[g] = diagonal_block(problem.M, group.first, group.dimension, work_);
   }
   if (factored_ != nullptr) {
     impulse_.resize(factored_->degrees_of_freedom());

@@ -36,14 +36,8 @@ void ScaledGroups::set_bodies(const Problem& problem) {
 }
 
 void ScaledGroups::set_given(const Problem& problem) {
-  group_scale(problem, s_);
-  if (const auto* factored = std::get_if<FactoredMatrix>(&problem.M)) {
-    W_ = factored->form();
-  } else if (const auto* dense = std::get_if<Matrix>(&problem.M)) {
-    W_ = dense->sparseView();
-  } else {
-    W_ = std::get<SparseMatrix>(problem.M);
-  }
+  group_scale(problem, s_, work_);
+  sparse_form_.form(problem.M, W_);
   for (int j = 0; j < W_.outerSize(); ++j) {
     for (SparseMatrix::InnerIterator it(W_, j); it; ++it) {
       it.valueRef() *= s_[it.row()] * s_[j];

@@ -3,6 +3,7 @@
 #include <signorini/lcp/alart_curnier_function.h>
 #include <signorini/lcp/body_newton_system.h>
 #include <signorini/lcp/newton_system.h>
+#include <signorini/lcp/sparse_form.h>
 #include <signorini/lcp/whitened_rows.h>
 
 #include <vector>
@@ -38,6 +39,11 @@ class ScaledGroups {
     return in_body_space_ ? body_system_.solve(F, dx) : system_.solve(F, dx);
   }
 
+  /// The most that the back-end held since set(); 0 if all matrices were dense.
+  [[nodiscard]] std::int64_t factor_bytes() const {
+    return in_body_space_ ? body_system_.factor_bytes() : system_.factor_bytes();
+  }
+
   /// z = s t x.
   void to_caller(const Vector& x, Vector& z) const { z = t_ * s_.cwiseProduct(x); }
   /// x = z / (s t).
@@ -50,8 +56,10 @@ class ScaledGroups {
   Vector s_, b_;
   double t_ = 1.0;
   bool in_body_space_ = false;
-  WhitenedRows rows_;             // of a factored problem, or
-  SparseMatrix W_;                // the matrix, scaled
+  WhitenedRows rows_;  // of a factored problem, or
+  SparseMatrix W_;     // the matrix, scaled
+  SparseForm sparse_form_;
+  Vector work_;
   std::vector<int> group_start_;  // of rows_
   Vector velocity_;
   AlartCurnierFunction function_;

@@ -33,6 +33,9 @@ std::string cost_text(const Statistics& statistics) {
   add(statistics.iterations, "iterations");
   add(statistics.factorizations, "factorizations");
   add(statistics.refinements, "refinements");
+  if (statistics.factor_bytes > 0) {
+    text += fmt::format("factor {:.3g} kB, ", 1e-3 * static_cast<double>(statistics.factor_bytes));
+  }
   return text + fmt::format("{:.3g} s", statistics.solve_seconds);
 }
 

@@ -22,7 +22,7 @@ Json number(double value) {
   return value;
 }
 
-Json counter(int value) {
+Json counter(std::int64_t value) {
   return value < 0 ? Json(nullptr) : Json(value);
 }
 
@@ -75,6 +75,7 @@ Json result_object(const Result& result, double tolerance) {
                {"pivots", counter(result.statistics.pivots)},
                {"factorizations", counter(result.statistics.factorizations)},
                {"refinements", counter(result.statistics.refinements)},
+               {"factor_bytes", counter(result.statistics.factor_bytes)},
                {"solve_seconds", number(result.statistics.solve_seconds)},
                {"certificate", certificate_object(result.certificate)},
                {"ray_bound", number(result.ray_bound)}};

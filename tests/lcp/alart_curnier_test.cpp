@@ -4,11 +4,13 @@
 
 #include "allocation_count.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
 #include <random>
+#include <vector>
 
 namespace signorini::lcp {
 namespace {
@@ -278,16 +280,60 @@ TEST(AlartCurnier, RefusesSettingsOutOfRange) {
   EXPECT_THROW(AlartCurnier{settings}, std::invalid_argument);
 }
 
-TEST(AlartCurnier, AllocatesNothingTheSecondTimeWhereTheFactorIsDense) {
-  Problem problem = random_contacts(3, 12, 3, 16, 0.1);
-  problem.M = SparseMatrix(std::get<Matrix>(problem.M).sparseView());
+/// Contacts in space of one body of six freedoms with the next, and a common ground.
+Problem chain(unsigned seed, int bodies, int contacts_each) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  FactoredMatrix A;
+  for (int b = 0; b < bodies; ++b) A.mass.add_inverse(Matrix::Identity(6, 6));
+  Problem problem;
+  Vector v(6 * bodies);
+  for (double& value : v) value = normal(random);
+  std::vector<double> q;
+  for (int c = 0; c < bodies * contacts_each; ++c) {
+    problem.cones.push_back({A.rows(), 3, 0.3});
+    for (int k = 0; k < 3; ++k) {
+      A.add_row();
+      q.push_back(0.0);
+      for (int b = c % bodies; b <= std::min(c % bodies + 1, bodies - 1); ++b) {
+        Vector values(6);
+        for (double& value : values) value = normal(random);
+        A.add_entry(b, values);
+        q.back() += values.dot(v.segment(6 * b, 6));
+      }
+    }
+  }
+  problem.q = Eigen::Map<const Vector>(q.data(), static_cast<Index>(q.size()));
+  problem.M = A;
+  return problem;
+}
+
+/// Solves twice. @return the numbers that the back-end holds, in bytes.
+std::int64_t expect_no_allocation_the_second_time(const Problem& problem) {
   AlartCurnier solver;
   Result result;
   solver.solve(problem, result);
-  ASSERT_EQ(result.status, Status::kSolved);
+  EXPECT_EQ(result.status, Status::kSolved);
   const AllocationCount allocations;
   solver.solve(problem, result);
   EXPECT_EQ(allocations.count(), 0);
+  EXPECT_EQ(allocations.back_end_count() > 0, result.statistics.factor_bytes > 0);
+  return result.statistics.factor_bytes;
+}
+
+TEST(AlartCurnier, AllocatesNothingTheSecondTimeButInTheBackEnd) {
+  Problem small = random_contacts(3, 12, 3, 16, 0.1);
+  EXPECT_EQ(expect_no_allocation_the_second_time(small), 0) << "dense, given dense";
+  small.M = SparseMatrix(std::get<Matrix>(small.M).sparseView());
+  EXPECT_EQ(expect_no_allocation_the_second_time(small), 0) << "dense, given sparse";
+  const Problem large = random_contacts(3, 120, 3, 150, 0.1);
+  EXPECT_GT(expect_no_allocation_the_second_time(large), 0) << "sparse";
+  Problem bodies = chain(4, 6, 3);
+  EXPECT_GT(expect_no_allocation_the_second_time(bodies), 0) << "body space";
+  const int n = static_cast<int>(bodies.size());
+  bodies.cones.clear();
+  for (int i = 0; i + 2 < n; i += 3) bodies.limits.push_back({i + 1, i, 0.3});
+  EXPECT_EQ(expect_no_allocation_the_second_time(bodies), 0) << "formed, with coupled limits";
 }
 
 }  // namespace

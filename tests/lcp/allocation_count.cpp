@@ -1,5 +1,7 @@
 #include "allocation_count.h"
 
+#include <signorini/lcp/back_end.h>
+
 #include <atomic>
 #include <cerrno>
 #include <cstddef>
@@ -13,13 +15,18 @@ extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*malloc_hook)(con
 
 namespace {
 std::atomic<long> allocations{0};
+std::atomic<long> back_end_allocations{0};
+
+void count_one() {
+  ++(signorini::lcp::BackEndScope::is_active() ? back_end_allocations : allocations);
+}
 }  // namespace
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 // The sanitizer owns malloc and offers a hook.
 namespace {
 const int hooked = __sanitizer_install_malloc_and_free_hooks(
-    [](const volatile void*, std::size_t) { ++allocations; }, [](const volatile void*) {});
+    [](const volatile void*, std::size_t) { count_one(); }, [](const volatile void*) {});
 }  // namespace
 #else
 // glibc's own names behind malloc; ours stand before them for the whole process.
@@ -30,27 +37,27 @@ void* __libc_realloc(void* old, std::size_t size);
 void* __libc_memalign(std::size_t alignment, std::size_t size);
 
 void* malloc(std::size_t size) {
-  ++allocations;
+  count_one();
   return __libc_malloc(size);
 }
 void* calloc(std::size_t count, std::size_t size) {
-  ++allocations;
+  count_one();
   return __libc_calloc(count, size);
 }
 void* realloc(void* old, std::size_t size) {
-  ++allocations;
+  count_one();
   return __libc_realloc(old, size);
 }
 void* memalign(std::size_t alignment, std::size_t size) {
-  ++allocations;
+  count_one();
   return __libc_memalign(alignment, size);
 }
 void* aligned_alloc(std::size_t alignment, std::size_t size) {
-  ++allocations;
+  count_one();
   return __libc_memalign(alignment, size);
 }
 int posix_memalign(void** out, std::size_t alignment, std::size_t size) {
-  ++allocations;
+  count_one();
   *out = __libc_memalign(alignment, size);
   return *out == nullptr ? ENOMEM : 0;
 }
@@ -59,10 +66,15 @@ int posix_memalign(void** out, std::size_t alignment, std::size_t size) {
 
 namespace signorini::lcp {
 
-AllocationCount::AllocationCount() : at_start_(allocations.load()) {}
+AllocationCount::AllocationCount()
+    : at_start_(allocations.load()), back_end_at_start_(back_end_allocations.load()) {}
 
 long AllocationCount::count() const {
   return allocations.load() - at_start_;
+}
+
+long AllocationCount::back_end_count() const {
+  return back_end_allocations.load() - back_end_at_start_;
 }
 
 }  // namespace signorini::lcp

@@ -1,5 +1,6 @@
 #include "allocation_count.h"
 
+#include <signorini/lcp/back_end.h>
 #include <signorini/lcp/types.h>
 
 #include <cstdlib>
@@ -53,6 +54,21 @@ TEST(AllocationCount, CountsEigen) {
   v.setZero(11);
   use(v.data());
   EXPECT_EQ(allocations.count(), 2);
+}
+
+TEST(AllocationCount, CountsABackEndApart) {
+  const AllocationCount allocations;
+  {
+    const BackEndScope scope;
+    const auto one = std::make_unique<int>(1);
+    use(one.get());
+    EXPECT_EQ(allocations.back_end_count(), 1);
+    EXPECT_EQ(allocations.count(), 0);
+  }
+  const auto two = std::make_unique<int>(2);
+  use(two.get());
+  EXPECT_EQ(allocations.back_end_count(), 1);
+  EXPECT_EQ(allocations.count(), 1);
 }
 
 TEST(AllocationCount, CountsOtherThreads) {

@@ -1,6 +1,7 @@
 #include <signorini/lcp/cone_interior_point.h>
 #include <signorini/lcp/second_order_cone.h>
 
+#include "allocation_count.h"
 #include "bench/contact_families.h"
 
 #include <Eigen/Geometry>
@@ -344,6 +345,24 @@ TEST(ConeInteriorPoint, RefusesSettingsOutOfRange) {
             "settings: step_fraction: must be in (0, 1), got 1");
   EXPECT_NE(refused([](auto& s) { s.step_fraction = std::nan(""); }), "");
   EXPECT_NE(refused([](auto& s) { s.tolerance = 0.0; }), "");
+}
+
+/// At 1e-15 the path ends short of the tolerance, and the polish follows.
+TEST(ConeInteriorPoint, AllocatesNothingTheSecondTimeButInTheBackEnd) {
+  const Problem given = random_contacts(3, 12, 3, 16, 0.1);
+  const Problem sparse = random_contacts(3, 60, 3, 80, 0.1);
+  const Problem bodies = family_with_friction({"tower4", 64}, FrictionLaw::kCoulomb);
+  for (const Problem* problem : {&given, &sparse, &bodies}) {
+    ConeInteriorPoint solver({{.tolerance = 1e-15}, 20});
+    Result result;
+    solver.solve(*problem, result);
+    ASSERT_GT(result.statistics.factorizations, result.statistics.iterations + 1) << "no polish";
+    const AllocationCount allocations;
+    solver.solve(*problem, result);
+    EXPECT_EQ(allocations.count(), 0);
+    EXPECT_EQ(allocations.back_end_count() > 0, problem != &given);
+    EXPECT_EQ(result.statistics.factor_bytes > 0, problem != &given);
+  }
 }
 
 }  // namespace

@@ -102,7 +102,7 @@ TEST_F(SignoriniSolve, JsonHasThePromisedKeys) {
   const Outcome result = run(path() + " --solver lemke --json");
   const auto json = nlohmann::json::parse(result.out);
   for (const char* key : {"status", "solver", "detail", "iterations", "pivots", "factorizations",
-                          "solve_seconds", "certificate", "ray_bound"}) {
+                          "factor_bytes", "solve_seconds", "certificate", "ray_bound"}) {
     EXPECT_TRUE(json.contains(key)) << key;
   }
   EXPECT_LE(json["certificate"]["natural_residual"], 1e-8);

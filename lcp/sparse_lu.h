@@ -1,0 +1,38 @@
+#pragma once
+
+#include <signorini/lcp/types.h>
+
+#include <Eigen/SparseLU>
+#include <cstdint>
+#include <span>
+
+namespace signorini::lcp {
+
+/// The sparse LU with partial pivoting of Eigen (MPL 2), for matrices that need not be symmetric.
+/// It allocates at every call; BackEndScope stands around it.
+class SparseLu {
+ public:
+  /// A compressed matrix in someone else's memory.
+  using View = Eigen::Map<const SparseMatrix>;
+
+  /// For matrices with a symmetric pattern and large diagonals: an ordering for it, and diagonal
+  /// pivots down to a tenth of the largest.
+  void prefer_diagonal();
+  /// Orders and analyses the pattern. @param matrix n x n, n >= 1
+  void analyse(const View& matrix);
+  /// Factors a matrix of the analysed pattern. @return false if it is singular or not finite;
+  /// solve() must then not be called.
+  [[nodiscard]] bool factor(const View& matrix);
+  /// x <- M^-1 x. @param x n numbers @pre factor() returned true.
+  void solve(std::span<double> x);
+
+  /// The most that L and U of any factor() held, their numbers alone, since reset_bytes().
+  [[nodiscard]] std::int64_t bytes() const { return bytes_; }
+  void reset_bytes() { bytes_ = 0; }
+
+ private:
+  Eigen::SparseLU<SparseMatrix, Eigen::COLAMDOrdering<int>> lu_;
+  std::int64_t bytes_ = 0;
+};
+
+}  // namespace signorini::lcp
