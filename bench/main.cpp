@@ -19,6 +19,10 @@
 #include "bench/bullet_laws.h"
 #endif
 
+#ifdef SIGNORINI_HAS_BULLET_DROP_IN
+#include "bench/drop_in_command.h"
+#endif
+
 #ifdef SIGNORINI_HAS_GMP
 #include "bench/exactness_study.h"
 #endif
@@ -217,6 +221,9 @@ int run(int argc, char** argv) {
   const BulletSetsCommand bullet_sets(app);
   const SequenceCommand sequence(app);
   const FuzzCommand fuzz(app);
+#ifdef SIGNORINI_HAS_BULLET_DROP_IN
+  const DropInCommand drop_in(app);
+#endif
 #ifdef SIGNORINI_HAS_COLLISION
   const CollisionCommand collision(app);
   const SteppingCommand stepping(app);
@@ -234,6 +241,11 @@ int run(int argc, char** argv) {
     pin_libraries_to_one_thread(argv);
     return run_scaling(scaling);
   }
+#ifdef SIGNORINI_HAS_BULLET_DROP_IN
+  if (drop_in.is_asked()) {
+    return drop_in.run();
+  }
+#endif
 #ifdef SIGNORINI_HAS_COLLISION
   if (collision.is_asked()) {
     return collision.run();

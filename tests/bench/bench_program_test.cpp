@@ -66,6 +66,14 @@ TEST_F(BenchProgram, BulletSetsWritesItsCsvOrSaysThatThereIsNoBullet) {
 #endif
 }
 
+#ifdef SIGNORINI_HAS_BULLET_DROP_IN
+TEST_F(BenchProgram, DropInWritesItsCsv) {
+  EXPECT_EQ(run("drop-in --scenes stack --seconds 0.1 --out '" + folder_.string() + "'"), 0);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "drop-in.csv"));
+  EXPECT_EQ(run("drop-in --scenes castle"), 64);
+}
+#endif
+
 TEST_F(BenchProgram, DumpsAStudyAndReplaysItAsASequence) {
   const std::string dump = (folder_ / "dump").string();
   ::setenv("SIGNORINI_DUMP", (dump + ":max=5").c_str(), 1);
