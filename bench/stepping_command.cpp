@@ -18,10 +18,12 @@ constexpr int kClaimsHold = 0;
 constexpr int kWrongClaim = 1;
 
 std::vector<Contestant> contestants() {
-  TimeStepSettings settings;
-  settings.friction_model = FrictionModel::kCone;
-  settings.solver = "auto";
-  std::vector<Contestant> all{our_stepper("signorini cone, auto", settings)};
+  std::vector<Contestant> all;
+  for (const char* position : {"preview", "game", "engineering", "reference"}) {
+    TimeStepSettings settings;
+    settings.accuracy = Accuracy::named(position);
+    all.push_back(our_stepper(std::string("signorini, ") + position, settings));
+  }
 #ifdef SIGNORINI_PEER_BULLET
   for (const int iterations : {10, 50, 200, 1000}) {
     all.push_back(bullet_stepper(iterations));

@@ -107,21 +107,27 @@ double ContactGroups::residual_of(const Problem& problem, const Group& group, co
     v[0] += mu * tangential_norm(dimension, v.data());
   }
   const double* x = z.data() + first;
+  const bool has_normal_part = dimension > 1 && problem.friction_law == FrictionLaw::kCoulomb;
+  const double w_normal = has_normal_part ? w[first] : 0.0;  // of e_c, see Certificate
   const double unit_free_scale = q_inf_ > 0.0 ? q_inf_ : 1.0;
   if (!is_free && std::all_of(x, x + dimension, [](double value) { return value == 0.0; })) {
-    return cone_step(mu, dimension, x, v.data(), 1.0) / unit_free_scale;
+    return std::max(cone_step(mu, dimension, x, v.data(), 1.0), -w_normal) / unit_free_scale;
   }
   const bool is_inside =
       is_free || (dimension == 1 ? x[0] >= 0.0 : cone_violation(mu, dimension, x) == 0.0);
-  const double bound = std::hypot(v[0], v[1], v[2]) / unit_free_scale;
+  const double bound = std::max(std::hypot(v[0], v[1], v[2]), std::abs(w_normal)) / unit_free_scale;
   if (is_free || (is_inside && !(bound > fine))) {
     return bound;
   }
   const Eigen::Matrix3d block = diagonal_block(problem.M, first, dimension);
   const double D = dimension == 1 ? (block(0, 0) > 0.0 ? block(0, 0) : 1.0)
                                   : largest_eigenvalue(block, dimension);
-  return std::max(cone_step(mu, dimension, x, v.data(), 1.0) / (1.0 + q_inf_),
-                  cone_step(mu, dimension, x, v.data(), D) / unit_free_scale);
+  const double length = has_normal_part ? std::hypot(x[0], tangential_norm(dimension, x)) : 0.0;
+  const auto step = [&](double s) {
+    return std::max(cone_step(mu, dimension, x, v.data(), s),
+                    std::abs(std::min(s * length, w_normal)));
+  };
+  return std::max(step(1.0) / (1.0 + q_inf_), step(D) / unit_free_scale);
 }
 
 double ContactGroups::residual(const Problem& problem, const Vector& z, const Vector& w,

@@ -49,6 +49,24 @@ int find_root(std::vector<int>& parent, int i) {
 
 }  // namespace
 
+std::vector<Velocity> velocities_of(const Bodies& bodies, const State& state) {
+  std::vector<Velocity> velocities;
+  velocities.reserve(bodies.size());
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    velocities.push_back(velocity(bodies[k], state[k]));
+  }
+  return velocities;
+}
+
+double gap_velocity(const std::vector<Velocity>& velocities, const State& state,
+                    const Contact& contact) {
+  const int a = contact.body_a;
+  const int b = contact.body_b;
+  const Vec3 u_a = velocities[a].at(contact.point_a - state[a].x);
+  const Vec3 u_b = velocities[b].at(contact.point_b - state[b].x);
+  return contact.normal.dot(u_a - u_b);
+}
+
 double gap_velocity(const Bodies& bodies, const State& state, const Contact& contact) {
   const int a = contact.body_a;
   const int b = contact.body_b;
@@ -59,8 +77,12 @@ double gap_velocity(const Bodies& bodies, const State& state, const Contact& con
 
 lcp::Vector gap_velocities(const Bodies& bodies, const State& state, const ContactSet& contacts) {
   lcp::Vector d_dot(contacts.size());
+  if (contacts.empty()) {
+    return d_dot;
+  }
+  const std::vector<Velocity> velocities = velocities_of(bodies, state);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    d_dot[i] = gap_velocity(bodies, state, contacts[i]);
+    d_dot[i] = gap_velocity(velocities, state, contacts[i]);
   }
   return d_dot;
 }

@@ -21,7 +21,12 @@ struct NormalRows {
   std::vector<int> block_of_body;  ///< -1 for bodies without a row
 };
 
+/// velocity() of every body: J^-1 is worth computing once a body, not once a contact.
+[[nodiscard]] std::vector<Velocity> velocities_of(const Bodies& bodies, const State& state);
+
 /// d' = N.(u_A - u_B) of one contact, with N as it is now; m/s, < 0 approaching.
+[[nodiscard]] double gap_velocity(const std::vector<Velocity>& velocities, const State& state,
+                                  const Contact& contact);
 [[nodiscard]] double gap_velocity(const Bodies& bodies, const State& state, const Contact& contact);
 /// The same for every contact of a set.
 [[nodiscard]] lcp::Vector gap_velocities(const Bodies& bodies, const State& state,

@@ -45,11 +45,12 @@ void fill(const Bodies& bodies, const State& state, const ContactSet& contacts,
 std::vector<ContactIsland> contact_islands(const Bodies& bodies, const State& state,
                                            const ContactSet& contacts,
                                            const lcp::VectorRef& allowance,
-                                           const std::vector<JointRow>& joints) {
+                                           const std::vector<JointRow>& joints, bool merged) {
   BodyPairs links = body_pairs(contacts);
   const BodyPairs joined = body_pairs(joints);
   links.insert(links.end(), joined.begin(), joined.end());
-  const std::vector<int> set_of_link = linked_sets(bodies, links);
+  const std::vector<int> set_of_link =
+      merged ? std::vector<int>(links.size(), 0) : linked_sets(bodies, links);
   std::vector<ContactIsland> islands;
   for (std::size_t i = 0; i < links.size(); ++i) {
     if (set_of_link[i] == static_cast<int>(islands.size())) {

@@ -27,9 +27,11 @@ struct ContactIsland {
 /// their first joint: depends on the input alone. Cost: O(bodies +
 /// contacts + joints) for all of them.
 /// @param contacts each with a dynamic body. @param allowance one a contact
+/// @param merged all as one island, to check the others against
 [[nodiscard]] std::vector<ContactIsland> contact_islands(const Bodies& bodies, const State& state,
                                                          const ContactSet& contacts,
                                                          const lcp::VectorRef& allowance,
-                                                         const std::vector<JointRow>& joints = {});
+                                                         const std::vector<JointRow>& joints = {},
+                                                         bool merged = false);
 
 }  // namespace signorini

@@ -53,7 +53,7 @@ void ContactMemory::add(const PyramidProblem& pyramid, const ContactSet& contact
   const std::size_t first = entries_.size();
   for (int i = 0; i < normals; ++i) {
     entries_.push_back({contacts[i].body_a, contacts[i].body_b, contacts[i].feature_id, z[i],
-                        impulses[i] - z[i] * contacts[i].normal, 0.0});
+                        impulses[i] - z[i] * contacts[i].normal, impulses[i], 0.0});
   }
   for (int c = 0; c < frictional; ++c) {
     entries_[first + pyramid.frictional[c]].slip = z[normals + pyramid.sides * frictional + c];
@@ -67,7 +67,7 @@ void ContactMemory::add(const ConeProblem& cones, const ContactSet& contacts,
     const Contact& contact = contacts[i];
     const double normal = z[cones.normal_row[i]];
     entries_.push_back({contact.body_a, contact.body_b, contact.feature_id, normal,
-                        impulses[i] - normal * contact.normal, 0.0});
+                        impulses[i] - normal * contact.normal, impulses[i], 0.0});
   }
 }
 
@@ -117,10 +117,10 @@ int ContactMemory::recall(const ConeProblem& cones, const ContactSet& contacts,
     }
     ++known;
     const int row = cones.normal_row[i];
-    z[row] = std::max(entry->normal, 0.0);
+    z[row] = std::max(entry->whole.dot(contacts[i].normal), 0.0);
     if (cones.friction[i] > 0.0) {
-      z[row + 1] = cones.frames[i].t1.dot(entry->friction);
-      z[row + 2] = cones.frames[i].t2.dot(entry->friction);
+      z[row + 1] = cones.frames[i].t1.dot(entry->whole);
+      z[row + 2] = cones.frames[i].t2.dot(entry->whole);
     }
   }
   return known;

@@ -30,7 +30,8 @@ class ContactMemory {
   /// pyramid on either side of it, beta >= 0; lambda as it was; zero for contacts that are new.
   /// @return how many contacts were known; z is written in any case
   int recall(const PyramidProblem& pyramid, const ContactSet& contacts, lcp::Vector& z) const;
-  /// The same for cones: f, and the friction impulse in the new frame.
+  /// The same for cones: the whole impulse in the new frame. Where a loaded contact's normal turns
+  /// a little, its force stays as it was, and the bodies that it held in balance.
   int recall(const ConeProblem& cones, const ContactSet& contacts, lcp::Vector& z) const;
 
  private:
@@ -40,6 +41,7 @@ class ContactMemory {
     std::uint64_t feature_id;
     double normal;  // N s
     Vec3 friction;  // N s, on A
+    Vec3 whole;     // N s, on A
     double slip;    // lambda, m/s
   };
   [[nodiscard]] const Entry* find(const Contact& contact) const;

@@ -14,19 +14,36 @@ void assemble_cones(const Bodies& bodies, const State& free_state, const Contact
                                 std::to_string(contacts.size()) + "), got " +
                                 std::to_string(allowance.size()));
   }
+  check_dynamic(bodies, contacts);
+  std::vector<Velocity> velocities;
+  if (!contacts.empty()) {
+    velocities = velocities_of(bodies, free_state);
+  }
+  ConeProblem fresh = std::move(out);  // its memory
+  fresh.normal_row.clear();
+  fresh.frames.clear();
+  fresh.friction.clear();
+  fresh.problem.cones.clear();
+  fresh.problem.limits.clear();
+  fresh.problem.lower.resize(0);
+  fresh.problem.upper.resize(0);
   NormalRows rows;
+  if (auto* used = std::get_if<lcp::FactoredMatrix>(&fresh.problem.M)) {
+    rows.A = std::move(*used);
+  }
   start_rows(bodies, free_state, contacts, rows, body_pairs(joints));
-  ConeProblem fresh;
   std::vector<double> q;
+  q.reserve(3 * contacts.size());
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const Contact& contact = contacts[i];
     fresh.normal_row.push_back(rows.A.rows());
     fresh.frames.emplace_back();
     fresh.friction.push_back(contact.material.friction);
     add_row(free_state, contact, contact.normal, contact.point_a, contact.point_b, rows);
-    q.push_back(gap_velocity(bodies, free_state, contact) + allowance[static_cast<lcp::Index>(i)]);
+    q.push_back(gap_velocity(velocities, free_state, contact) +
+                allowance[static_cast<lcp::Index>(i)]);
     if (contact.material.friction > 0.0) {
-      const Vec3 slip = slip_velocity(bodies, free_state, contact);
+      const Vec3 slip = slip_velocity(velocities, free_state, contact);
       const TangentFrame frame = tangent_frame(contact.normal, slip);
       for (const Vec3& tangent : {frame.t1, frame.t2}) {
         add_tangent_row(free_state, contact, tangent, rows);

@@ -8,9 +8,16 @@ std::string to_text(const StepReport& report) {
   std::string text =
       count(report.contacts.size()) + " contacts, " + count(report.islands.size()) + " islands, " +
       std::to_string(report.rows) + " rows; left out: " + std::to_string(report.contacts_left_out) +
-      " contacts about to bounce, " + std::to_string(report.tangents_left_out) +
-      " tangents without friction, " + std::to_string(report.dynamic_bodies_without_rows) +
-      " bodies without contact\n";
+      " contacts about to bounce, " + std::to_string(report.contacts_apart) +
+      " contacts apart (put back: " + std::to_string(report.contacts_put_back) + "), " +
+      std::to_string(report.tangents_left_out) + " tangents without friction, " +
+      std::to_string(report.dynamic_bodies_without_rows) + " bodies without contact\n";
+  if (!report.accuracy.empty()) {
+    text += "accuracy: " + report.accuracy + ", " + number_text(report.work) + " units of work" +
+            (report.is_deterministic ? "" : ", limited by time: not deterministic") + "\n";
+  }
+  text += "seconds: find " + number_text(report.seconds.find) + ", solve " +
+          number_text(report.seconds.solve) + ", move " + number_text(report.seconds.move) + "\n";
   for (std::size_t k = 0; k < report.islands.size(); ++k) {
     const IslandReport& island = report.islands[k];
     text += "island " + count(k) + ": " + std::to_string(island.bodies) + " bodies, " +
@@ -18,7 +25,8 @@ std::string to_text(const StepReport& report) {
             (island.joint_rows > 0 ? std::to_string(island.joint_rows) + " joint rows, " : "") +
             std::to_string(island.rows) + " rows, " + island.model + ", " + island.solver + ": " +
             std::string(lcp::to_string(island.status)) + ", residual " +
-            number_text(island.unit_free_residual) + "\n";
+            number_text(island.unit_free_residual) + " (" + number_text(island.residual) +
+            " m/s)\n";
   }
   return text;
 }

@@ -20,6 +20,15 @@ struct IslandReport {
   std::string solver;
   lcp::Status status = lcp::Status::kNotRun;
   double unit_free_residual = std::numeric_limits<double>::quiet_NaN();
+  double residual = std::numeric_limits<double>::quiet_NaN();  ///< that times |q|_inf, m/s
+  double work = 0.0;  ///< with the dial, units of StepBudget::work
+};
+
+/// Wall time of the stages of a step, s.
+struct StageSeconds {
+  double find = 0.0;   ///< contacts at the start
+  double solve = 0.0;  ///< rows made, islands solved, impulses applied
+  double move = 0.0;   ///< bodies moved, contacts at the end, overlap projected
 };
 
 /// What one step did.
@@ -38,6 +47,10 @@ struct StepReport {
   int rows = 0;                       ///< of all islands
   /// Contacts found but left out of the problem: apart, with restitution, and approaching fast.
   int contacts_left_out = 0;
+  /// Contacts found, apart, left out because the free motion does not close them, and looked at
+  /// after the solve; and those that had to be put back in, whose step was then solved again.
+  int contacts_apart = 0;
+  int contacts_put_back = 0;
   int tangents_left_out = 0;  ///< tangential rows not made: contacts without friction
   int dynamic_bodies_without_rows = 0;
   double kinetic_energy = 0.0;        ///< after the step, J
@@ -53,6 +66,10 @@ struct StepReport {
   /// statistics.solve_seconds: of all islands. Solver "closed form" for one contact that needs
   /// none.
   lcp::Result result;
+  std::string accuracy;          ///< position of the dial, empty without
+  double work = 0.0;             ///< of all islands, with the dial, units of StepBudget::work
+  bool is_deterministic = true;  ///< false where a clock decides when a solver stops
+  StageSeconds seconds;
   std::string detail;  ///< one line: anything beyond the plain scheme
 };
 

@@ -15,6 +15,14 @@ Vec3 friction_point(const Contact& contact) {
   return 0.5 * (contact.point_a + contact.point_b);
 }
 
+Vec3 slip_velocity(const std::vector<Velocity>& velocities, const State& state,
+                   const Contact& contact) {
+  const int a = contact.body_a;
+  const int b = contact.body_b;
+  const Vec3 point = friction_point(contact);
+  return velocities[a].at(point - state[a].x) - velocities[b].at(point - state[b].x);
+}
+
 Vec3 slip_velocity(const Bodies& bodies, const State& state, const Contact& contact) {
   const int a = contact.body_a;
   const int b = contact.body_b;

@@ -27,6 +27,8 @@ inline constexpr double kAligningSlip = 1e-9;
 [[nodiscard]] Vec3 friction_point(const Contact& contact);
 
 /// u_A - u_B at friction_point(), m/s, its normal part included.
+[[nodiscard]] Vec3 slip_velocity(const std::vector<Velocity>& velocities, const State& state,
+                                 const Contact& contact);
 [[nodiscard]] Vec3 slip_velocity(const Bodies& bodies, const State& state, const Contact& contact);
 
 /// Adds the row [t, r_A x t, -t, -(r_B x t)] at friction_point() to A; rows.d_dot is left alone.

@@ -8,7 +8,10 @@
 #include <signorini/lcp/certificate.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -47,38 +50,82 @@ double may_close(double gap) {
   return gap > kToleratedOverlap ? gap : 0.0;
 }
 
-// The contacts of a step's problem and how fast each may close.
-struct Selection {
-  ContactSet contacts;
-  lcp::Vector allowance;  // m/s
-  int left_out = 0;
-};
-
-Selection select(const ContactSet& found, const lcp::Vector& d_dot, const lcp::Vector& d_dot_free,
-                 const TimeStepSettings& settings) {
-  const double h = settings.step;
-  Selection selection;
-  std::vector<double> allowance;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    const Contact& contact = found[i];
-    const double e = contact.material.restitution;
-    const bool touching = contact.gap <= settings.touching_tolerance;
-    const double one_step = std::abs(d_dot_free[i] - d_dot[i]);
-    const bool fast = d_dot[i] < -std::max(settings.restitution_threshold, one_step);
-    const bool would_be_caught = contact.gap + h * d_dot_free[i] < 0.0;
-    if (e > 0.0 && !touching && fast && would_be_caught) {
-      ++selection.left_out;
-      continue;
+/// Which contacts are in a step's problem, and how fast each may close.
+class Selection {
+ public:
+  Selection(const ContactSet& found, const lcp::Vector& d_dot, const lcp::Vector& d_dot_free,
+            const TimeStepSettings& settings)
+      : found_(found), fate_(found.size(), Fate::kInProblem), allowance_(found.size()) {
+    const double h = settings.step;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const Contact& contact = found[i];
+      const double e = contact.material.restitution;
+      const bool touching = contact.gap <= settings.touching_tolerance;
+      const double one_step = std::abs(d_dot_free[i] - d_dot[i]);
+      const bool fast = d_dot[i] < -std::max(settings.restitution_threshold, one_step);
+      const bool would_be_caught = contact.gap + h * d_dot_free[i] < 0.0;
+      const bool bounces = touching && classify(d_dot[i], settings.restitution_threshold) ==
+                                           ContactClass::kColliding;
+      allowance_[i] = bounces ? e * d_dot[i] : may_close(contact.gap) / h;
+      if (e > 0.0 && !touching && fast && would_be_caught) {
+        fate_[i] = Fate::kAboutToBounce;
+      } else if (!settings.full_model && contact.gap > kToleratedOverlap &&
+                 d_dot_free[i] + allowance_[i] > 0.0) {
+        fate_[i] = Fate::kApart;
+      }
     }
-    const bool bounces =
-        touching && classify(d_dot[i], settings.restitution_threshold) == ContactClass::kColliding;
-    selection.contacts.push_back(contact);
-    allowance.push_back(bounces ? e * d_dot[i] : may_close(contact.gap) / h);
   }
-  selection.allowance =
-      Eigen::Map<const lcp::Vector>(allowance.data(), static_cast<lcp::Index>(allowance.size()));
-  return selection;
-}
+
+  /// Those in the problem, or all but those about to bounce.
+  [[nodiscard]] ContactSet contacts(bool with_apart) const {
+    ContactSet chosen;
+    chosen.reserve(found_.size());
+    for (std::size_t i = 0; i < found_.size(); ++i) {
+      if (fate_[i] == Fate::kInProblem || (with_apart && fate_[i] == Fate::kApart)) {
+        chosen.push_back(found_[i]);
+      }
+    }
+    return chosen;
+  }
+  /// Of the contacts in the problem.
+  [[nodiscard]] lcp::Vector allowance() const {
+    lcp::Vector chosen(static_cast<lcp::Index>(found_.size()));
+    lcp::Index count = 0;
+    for (std::size_t i = 0; i < found_.size(); ++i) {
+      if (fate_[i] == Fate::kInProblem) {
+        chosen[count++] = allowance_[i];
+      }
+    }
+    chosen.conservativeResize(count);
+    return chosen;
+  }
+  [[nodiscard]] int apart() const { return count(Fate::kApart); }
+  [[nodiscard]] int about_to_bounce() const { return count(Fate::kAboutToBounce); }
+
+  /// Puts back those that close farther than allowed. @return how many
+  int put_back(const std::vector<Velocity>& velocities, const State& state) {
+    constexpr double kRounding = 1e-13;  // m/s
+    int violated = 0;
+    for (std::size_t i = 0; i < found_.size(); ++i) {
+      if (fate_[i] == Fate::kApart &&
+          gap_velocity(velocities, state, found_[i]) + allowance_[i] < -kRounding) {
+        fate_[i] = Fate::kInProblem;
+        ++violated;
+      }
+    }
+    return violated;
+  }
+
+ private:
+  enum class Fate : std::uint8_t { kInProblem, kAboutToBounce, kApart };
+  [[nodiscard]] int count(Fate fate) const {
+    return static_cast<int>(std::count(fate_.begin(), fate_.end(), fate));
+  }
+
+  const ContactSet& found_;
+  std::vector<Fate> fate_;
+  std::vector<double> allowance_;  // m/s
+};
 
 bool is_worse(const lcp::Result& a, const lcp::Result& b) {
   const bool solved = lcp::is_solved(a.status);
@@ -110,6 +157,20 @@ BodyPairs never_colliding(const Joints& joints) {
   return pairs;
 }
 
+/// Wall time between laps.
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    const double seconds = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    return seconds;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
 int dynamic_bodies(const Bodies& bodies) {
   return static_cast<int>(std::count_if(bodies.begin(), bodies.end(),
                                         [](const Body& body) { return body.is_dynamic(); }));
@@ -135,6 +196,8 @@ IslandReport describe(const ContactIsland& island, const lcp::Problem& problem,
   report.solver = result.solver;
   report.status = result.status;
   report.unit_free_residual = result.certificate.unit_free_residual;
+  report.residual = result.certificate.unit_free_residual *
+                    (problem.size() > 0 ? problem.q.cwiseAbs().maxCoeff() : 0.0);
   return report;
 }
 
@@ -150,6 +213,10 @@ void TimeStepSettings::validate() const {
   require_not_negative(margin, "margin", "m");
   require_not_negative(touching_tolerance, "touching_tolerance", "m");
   require_not_negative(restitution_threshold, "restitution_threshold", "m/s");
+  require(threads >= 1, "threads", ">= 1", std::to_string(threads));
+  require(accuracy.has_value() || !budget.is_limited(), "budget", "unlimited without accuracy",
+          number_text(budget.work) + " units, " + number_text(budget.seconds) + " s");
+  budget.validate();
   lcp.validate();
 }
 
@@ -159,16 +226,21 @@ TimeStepper::TimeStepper(Bodies bodies, ContactFinder& finder, const TimeStepSet
       finder_(finder),
       settings_(settings),
       joints_(std::move(joints)),
+      island_threads_(island_settings(),
+                      settings.lcp.recorder != nullptr ? 1 : std::max(settings.threads, 1)),
       joint_memory_(joints_.size()) {
   settings_.validate();
   for (const Body& body : bodies_) {
     validate(body);
   }
-  solver_ = lcp::make_solver(settings_.solver, settings_.lcp);
   validate(joints_, bodies_);
   joined_ = never_colliding(joints_);
-  cone_solver_ = lcp::make_solver(settings_.cone_solver, settings_.lcp);
-  joint_solver_ = lcp::make_solver(settings_.joint_solver, settings_.lcp);
+  const std::string& of_settings = joints_.empty() ? settings_.solver : settings_.joint_solver;
+  projection_solver_ = lcp::make_solver(settings_.accuracy ? "auto" : of_settings, settings_.lcp);
+  for (const std::string& name :
+       {settings_.solver, settings_.cone_solver, settings_.joint_solver}) {
+    (void)lcp::make_solver(name, settings_.lcp);  // names known now, not in the first step
+  }
 }
 
 void TimeStepper::set_motor(int joint, const JointMotor& motor) {
@@ -206,81 +278,105 @@ State TimeStepper::with_forces_applied(const State& start) const {
   return state;
 }
 
-void TimeStepper::find(const State& state, ContactSet& contacts) {
-  contacts.clear();
-  finder_.find(state, settings_.margin, contacts);
-  std::erase_if(contacts, [&](const Contact& contact) {
-    const std::pair<int, int> bodies = std::minmax(contact.body_a, contact.body_b);
-    return std::binary_search(joined_.begin(), joined_.end(), bodies);
-  });
-  validate(contacts, static_cast<int>(bodies_.size()));
+FrictionModel TimeStepper::friction_model() const {
+  return settings_.accuracy ? FrictionModel::kCone : settings_.friction_model;
 }
 
-void TimeStepper::solve(const VelocityProblem& velocity, const ContactSet& contacts,
-                        const std::vector<JointRow>& joints, lcp::Result& result) {
-  const lcp::Problem& problem = velocity.problem();
-  result = {};
-  result.z = velocity.closed_form();
-  if (result.z.size() > 0) {
-    result.solver = "closed form";
-    result.certificate = lcp::certify(problem, result.z, &result.w);
-    result.status =
-        lcp::judge(result.certificate, settings_.lcp.tolerance, lcp::Status::kNumericalBreakdown);
-    if (lcp::is_solved(result.status)) {
-      return;
-    }
+IslandSettings TimeStepper::island_settings() const {
+  return {.solver = settings_.solver,
+          .cone_solver = settings_.cone_solver,
+          .joint_solver = settings_.joint_solver,
+          .lcp = settings_.lcp,
+          .accuracy = settings_.accuracy,
+          .warm_start = settings_.warm_start};
+}
+
+/// found_ for the state, kept where the poses are those that it was found for.
+void TimeStepper::find(const State& state) {
+  const auto same = [](const BodyState& body, const Pose& pose) {
+    return body.x == pose.position && body.q.coeffs() == pose.orientation.coeffs();
+  };
+  if (std::equal(state.begin(), state.end(), found_poses_.begin(), found_poses_.end(), same)) {
+    return;
   }
-  const bool warm =
-      settings_.warm_start && (velocity.recall(contacts, memory_, start_) > 0 || !joints.empty());
-  if (warm) {
-    recall_joints(joints, joint_memory_, start_);
+  forget_contacts();  // should the finder throw
+  found_.clear();
+  finder_.find(state, settings_.margin, found_);
+  if (!joined_.empty()) {
+    std::erase_if(found_, [&](const Contact& contact) {
+      const std::pair<int, int> bodies = std::minmax(contact.body_a, contact.body_b);
+      return std::binary_search(joined_.begin(), joined_.end(), bodies);
+    });
   }
-  lcp::Solver& without_cones = joints.empty() ? *solver_ : *joint_solver_;
-  lcp::Solver& solver = problem.cones.empty() ? without_cones : *cone_solver_;
-  solver.solve(problem, result, warm ? &start_ : nullptr);
+  validate(found_, static_cast<int>(bodies_.size()));
+  found_poses_.reserve(state.size());
+  for (const BodyState& body : state) {
+    found_poses_.push_back(body.pose());
+  }
 }
 
 void TimeStepper::solve_islands(const std::vector<ContactIsland>& islands, const State& start,
                                 StepReport& report) {
+  std::vector<int> sizes;
+  int contacts_and_joints = 0;
+  for (const ContactIsland& island : islands) {
+    sizes.push_back(static_cast<int>(island.members.size() + island.joints.size()));
+    contacts_and_joints += sizes.back();
+  }
+  if (answers_.size() < islands.size()) {
+    answers_.resize(islands.size());
+  }
+  const StepMemory memory{memory_, joint_memory_};
+  island_threads_.run(sizes, [&](int k, IslandSolver& solver) {
+    const ContactIsland& island = islands[k];
+    IslandAnswer& answer = answers_[k];
+    answer.contacts.clear();
+    for (const int i : island.members) {
+      answer.contacts.push_back(report.contacts[i]);
+    }
+    answer.velocity.assemble(friction_model(), island.bodies, island.state, island.contacts,
+                             island.allowance, settings_.pyramid_sides, island.joints);
+    const double share = static_cast<double>(sizes[k]) / contacts_and_joints;
+    solver.solve(
+        answer.velocity, answer.contacts, island.joints, memory,
+        {.work = share * settings_.budget.work, .seconds = share * settings_.budget.seconds},
+        answer.result, answer.work);
+  });
+
   report.normal_impulses = lcp::Vector::Zero(static_cast<lcp::Index>(report.contacts.size()));
   report.impulses.assign(report.contacts.size(), Vec3::Zero());
   report.island_of.assign(report.contacts.size(), -1);
+  report.joints.assign(joints_.size(), {});
+  report.islands.clear();
+  report.result = {};
+  report.rows = report.joint_rows = report.tangents_left_out = 0;
   report.dynamic_bodies_without_rows = dynamic_bodies(bodies_);
-  next_memory_.forget();
   report.status = lcp::Status::kSolved;
-  for (const ContactIsland& island : islands) {
-    VelocityProblem velocity;
-    velocity.assemble(settings_.friction_model, island.bodies, island.state, island.contacts,
-                      island.allowance, settings_.pyramid_sides, island.joints);
-    ContactSet contacts;
-    for (const int i : island.members) {
-      contacts.push_back(report.contacts[i]);
-      report.island_of[i] = static_cast<int>(report.islands.size());
-      report.tangents_left_out += report.contacts[i].material.friction > 0.0 ? 0 : 2;
-    }
-    lcp::Result result;
-    solve(velocity, contacts, island.joints, result);
-    report.islands.push_back(
-        describe(island, velocity.problem(), result, settings_.friction_model));
-    report.rows += report.islands.back().rows;
-    report.joint_rows += report.islands.back().joint_rows;
-    report.dynamic_bodies_without_rows -= report.islands.back().bodies;
-    collect(velocity, contacts, island, start, std::move(result), report);
+  next_memory_.forget();
+  for (std::size_t k = 0; k < islands.size(); ++k) {
+    collect(answers_[k], islands[k], start, report);
   }
-  next_memory_.sort();
-  std::swap(memory_, next_memory_);
   if (islands.empty()) {
     VelocityProblem none;
-    none.assemble(settings_.friction_model, bodies_, {}, {}, lcp::Vector(),
-                  settings_.pyramid_sides);
-    solver_->solve(none.problem(), report.result);
+    none.assemble(friction_model(), bodies_, {}, {}, lcp::Vector(), settings_.pyramid_sides);
+    projection_solver_->solve(none.problem(), report.result);
   }
 }
 
-/// An island's solution, or its best iterate, into the report and the memory.
-void TimeStepper::collect(const VelocityProblem& velocity, const ContactSet& contacts,
-                          const ContactIsland& island, const State& start, lcp::Result&& result,
+/// An island's solution, or its best iterate, into the report and the next memory.
+void TimeStepper::collect(IslandAnswer& answer, const ContactIsland& island, const State& start,
                           StepReport& report) {
+  lcp::Result& result = answer.result;
+  report.islands.push_back(describe(island, answer.velocity.problem(), result, friction_model()));
+  report.islands.back().work = answer.work;
+  report.work += answer.work;
+  report.rows += report.islands.back().rows;
+  report.joint_rows += report.islands.back().joint_rows;
+  report.dynamic_bodies_without_rows -= report.islands.back().bodies;
+  for (const int i : island.members) {
+    report.island_of[i] = static_cast<int>(report.islands.size()) - 1;
+    report.tangents_left_out += report.contacts[i].material.friction > 0.0 ? 0 : 2;
+  }
   const bool usable = result.z.allFinite();
   if (!lcp::is_solved(result.status)) {
     append("velocity problem" + of_island(report) + ": " +
@@ -290,15 +386,15 @@ void TimeStepper::collect(const VelocityProblem& velocity, const ContactSet& con
   }
   report.status = worse(report.status, result.status);
   if (usable) {
-    velocity.remember(contacts, result.z, next_memory_);
-    const lcp::Vector normals = velocity.normal_impulses(result.z);
-    const std::vector<Vec3> impulses = velocity.impulses(contacts, result.z);
+    answer.velocity.remember(answer.contacts, result.z, next_memory_);
+    const lcp::Vector normals = answer.velocity.normal_impulses(result.z);
+    const std::vector<Vec3> impulses = answer.velocity.impulses(answer.contacts, result.z);
     for (std::size_t j = 0; j < island.members.size(); ++j) {
       report.normal_impulses[island.members[j]] = normals[static_cast<lcp::Index>(j)];
       report.impulses[island.members[j]] = impulses[j];
     }
-    const lcp::Vector joint_impulses = velocity.joint_impulses(result.z);
-    remember_joints(island.joints, joint_impulses, joint_memory_);
+    const lcp::Vector joint_impulses = answer.velocity.joint_impulses(result.z);
+    remember_joints(island.joints, joint_impulses, next_joint_memory_);
     add_joint_impulses(joints_, start, island.joints, joint_impulses, report.joints);
   }
   keep_worse(std::move(result), report.result);
@@ -332,11 +428,12 @@ void TimeStepper::move(const State& start, const ContactSet& contacts, State& st
 }
 
 void TimeStepper::project(const Bodies& solved, State& state, StepReport& report) {
-  ContactSet contacts;
-  find(state, contacts);
+  find(state);
+  const ContactSet& contacts = found_;
   const lcp::Vector d_dot = gap_velocities(bodies_, state, contacts);
   const double bounce_speed = std::max(kRestingSpeed, settings_.restitution_threshold);
   ContactSet chosen;
+  chosen.reserve(contacts.size());
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const bool leaves = d_dot[i] > kRestingSpeed;
     const bool will_bounce = contacts[i].material.restitution > 0.0 && d_dot[i] < -bounce_speed;
@@ -345,8 +442,8 @@ void TimeStepper::project(const Bodies& solved, State& state, StepReport& report
     }
   }
   ProjectionReport projection;
-  project_positions(bodies_, chosen, settings_.gravity, joints_.empty() ? *solver_ : *joint_solver_,
-                    state, projection, joints_, &solved);
+  project_positions(bodies_, chosen, settings_.gravity, *projection_solver_, state, projection,
+                    joints_, &solved);
   report.projection_status = projection.status;
   report.energy_change_projection = projection.energy_change;
   append(projection.detail, report.detail);
@@ -368,35 +465,61 @@ void TimeStepper::apply(const Bodies& solved, State& state, StepReport& report) 
 void TimeStepper::step(State& state, StepReport& report) {
   validate(bodies_, state);
   report = {};
-  ContactSet found;
-  find(state, found);
-  report.deepest_overlap = deepest_overlap(found);
+  if (settings_.accuracy) {
+    report.accuracy = settings_.accuracy->name();
+  }
+  report.is_deterministic = settings_.budget.seconds == StepBudget::kNone &&
+                            settings_.lcp.time_limit == std::numeric_limits<double>::infinity();
+  Stopwatch watch;
+  find(state);
+  check_dynamic(bodies_, found_);
+  report.deepest_overlap = deepest_overlap(found_);
+  report.seconds.find = watch.lap();
 
-  State next = with_forces_applied(state);
-  Selection selection = select(found, gap_velocities(bodies_, state, found),
-                               gap_velocities(bodies_, next, found), settings_);
-  report.contacts = std::move(selection.contacts);
-  report.contacts_left_out = selection.left_out;
-  if (selection.left_out > 0) {
-    append(std::to_string(selection.left_out) + " contacts about to bounce left out",
+  const State free = with_forces_applied(state);
+  Selection selection(found_, gap_velocities(bodies_, state, found_),
+                      gap_velocities(bodies_, free, found_), settings_);
+  report.contacts_left_out = selection.about_to_bounce();
+  if (report.contacts_left_out > 0) {
+    append(std::to_string(report.contacts_left_out) + " contacts about to bounce left out",
            report.detail);
   }
-
-  check_dynamic(bodies_, report.contacts);
   std::vector<JointRow> joined;
   joint_rows(joints_, state, settings_.step, joined);
-  report.joints.resize(joints_.size());
   const Bodies solved = solved_bodies(state, report);
-  solve_islands(contact_islands(solved, next, report.contacts, selection.allowance, joined), state,
-                report);
-  apply(solved, next, report);
+  const std::string detail = report.detail;
+
+  State next;
+  for (;;) {
+    report.detail = detail;
+    report.contacts = selection.contacts(false);
+    next_joint_memory_ = joint_memory_;
+    solve_islands(contact_islands(solved, free, report.contacts, selection.allowance(), joined,
+                                  settings_.full_model),
+                  state, report);
+    next = free;
+    apply(solved, next, report);
+    const int violated =
+        selection.apart() > 0 ? selection.put_back(velocities_of(bodies_, next), next) : 0;
+    if (violated == 0) {
+      break;
+    }
+    report.contacts_put_back += violated;
+  }
+  report.contacts_apart = selection.apart();
+  next_memory_.sort();
+  std::swap(memory_, next_memory_);
+  std::swap(joint_memory_, next_joint_memory_);
   joints_before_ = report.joints;
-  move(state, report.contacts, next);
+  report.seconds.solve = watch.lap();
+
+  move(state, selection.contacts(true), next);
   project(solved, next, report);
   measure_joints(joints_, next, report.joints);
   report.kinetic_energy = kinetic_energy(bodies_, next);
   report.potential_energy = potential_energy(bodies_, next, settings_.gravity);
   state = std::move(next);
+  report.seconds.move = watch.lap();
 }
 
 }  // namespace signorini

@@ -4,14 +4,17 @@
 #include <signorini/core/model/contact_finder.h>
 #include <signorini/core/model/joint.h>
 #include <signorini/core/model/unconstrained_motion.h>
+#include <signorini/core/response/accuracy.h>
 #include <signorini/core/response/contact_islands.h>
 #include <signorini/core/response/contact_memory.h>
+#include <signorini/core/response/island_threads.h>
 #include <signorini/core/response/step_report.h>
 #include <signorini/core/response/velocity_problem.h>
 #include <signorini/lcp/result.h>
 #include <signorini/lcp/solver.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,6 +58,17 @@ struct TimeStepSettings {
   /// Starts the velocity problem from the impulses of the step before (contact_memory.h), for
   /// solvers that use a warm start.
   bool warm_start = true;
+  /// The dial, one setting for whoever wants no others: chooses model (Coulomb's cone), solvers and
+  /// tolerance for each island (island_solver.h); friction_model, solver, cone_solver, joint_solver
+  /// and lcp.tolerance then count for nothing, but for the projection, which takes "auto".
+  std::optional<Accuracy> accuracy = std::nullopt;
+  StepBudget budget = {};  ///< of one step; needs accuracy
+  /// Threads that solve islands, >= 1: the same bits for any number. One where a recorder is told
+  /// of the solves, whose order then stays.
+  int threads = 1;
+  /// Every contact found has its rows, and all islands are one problem: what the reduced model is
+  /// checked against.
+  bool full_model = false;
 
   /// @throws std::invalid_argument naming field, value and bound.
   void validate() const;
@@ -74,7 +88,9 @@ inline constexpr double kRestingSpeed = 1e-6;
 /// (kCone: Coulomb's law itself, friction_cones.h, in the place of the last two lines; kBox: bounds
 /// on both tangents) with the masses and the contacts of the step's start. In turn:
 ///
-/// 1. Find the contacts with gap <= margin. v* = v- + h M^-1 F in momenta: p* = p + h m g, L* = L,
+/// 1. Find the contacts with gap <= margin; those of the last step's end again if no body moved
+/// since
+///    (forget_contacts()). v* = v- + h M^-1 F in momenta: p* = p + h m g, L* = L,
 ///    w* = J^-1 L*. Torque-free rotation keeps L exactly; the gyroscopic effect comes from the new
 ///    orientation in the next w: J^-1 is that of the orientation reached, so w* and the contact
 ///    rows have the gyroscopic torque of the rotation so far in them.
@@ -85,8 +101,11 @@ inline constexpr double kRestingSpeed = 1e-6;
 ///    it approaches faster than restitution_threshold and than the forces make it in one step
 ///    (below that it cannot be told from a resting one, and is caught). A bounce then starts up to
 ///    h |d'-| deep.
-/// 3. Solve each island (contact_islands.h) apart, in order; apply the impulses (driven and fixed
-///    bodies take none), move x and q with v+. Without contacts the problem is empty. An island of
+/// 3. Leave out the contacts that are apart and that the free motion does not close. Solve each
+///    island (contact_islands.h) apart; apply the impulses (driven and fixed bodies take none), and
+///    look at what was left out: contacts that these would close farther than allowed are put back,
+///    and the step is solved again. Then z = 0, w >= 0 solves the rows that were not made. Move x
+///    and q with v+. Without contacts the problem is empty. An island of
 ///    one contact is answered in closed form where there is one, and certified like any other:
 ///    without friction f = max(0, -(d'* + allowance)/A); with a cone or a box z = 0 where it
 ///    separates, -A^-1 q where that sticks within the bounds.
@@ -124,35 +143,48 @@ class TimeStepper {
   /// Drives a joint otherwise from the next step on. @throws std::invalid_argument for a number out
   /// of range and for a motor that validate() refuses; nothing is then changed
   void set_motor(int joint, const JointMotor& motor);
+  /// After a change of the finder's own shapes or filters: asks it anew in the next step even if no
+  /// body moved.
+  void forget_contacts() { found_poses_.clear(); }
 
  private:
   [[nodiscard]] Bodies solved_bodies(const State& state, StepReport& report) const;
   [[nodiscard]] State with_forces_applied(const State& start) const;
-  void find(const State& state, ContactSet& contacts);
+  [[nodiscard]] FrictionModel friction_model() const;
+  [[nodiscard]] IslandSettings island_settings() const;
+  void find(const State& state);
   void solve_islands(const std::vector<ContactIsland>& islands, const State& start,
                      StepReport& report);
-  void solve(const VelocityProblem& velocity, const ContactSet& contacts,
-             const std::vector<JointRow>& joints, lcp::Result& result);
-  void collect(const VelocityProblem& velocity, const ContactSet& contacts,
-               const ContactIsland& island, const State& start, lcp::Result&& result,
+  struct IslandAnswer;
+  void collect(IslandAnswer& answer, const ContactIsland& island, const State& start,
                StepReport& report);
   void apply(const Bodies& solved, State& state, StepReport& report) const;
   void move(const State& start, const ContactSet& contacts, State& state) const;
   void project(const Bodies& solved, State& state, StepReport& report);
+
+  /// An island's problem and its solution.
+  struct IslandAnswer {
+    VelocityProblem velocity;
+    ContactSet contacts;  // with the scene's body numbers
+    lcp::Result result;
+    double work = 0.0;
+  };
 
   Bodies bodies_;
   ContactFinder& finder_;
   TimeStepSettings settings_;
   Joints joints_;
   BodyPairs joined_;  // of the joints whose bodies do not collide: smaller first, sorted
-  std::unique_ptr<lcp::Solver> solver_;
-  std::unique_ptr<lcp::Solver> cone_solver_;
-  std::unique_ptr<lcp::Solver> joint_solver_;
+  std::unique_ptr<lcp::Solver> projection_solver_;
+  IslandThreads island_threads_;
+  std::vector<IslandAnswer> answers_;  // their memory
+  ContactSet found_;                   // the contacts of these poses
+  std::vector<Pose> found_poses_;
   ContactMemory memory_;
   ContactMemory next_memory_;
   JointMemory joint_memory_;
+  JointMemory next_joint_memory_;
   std::vector<JointReport> joints_before_;  // what they did in the last step
-  lcp::Vector start_;
 };
 
 }  // namespace signorini

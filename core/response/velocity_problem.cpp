@@ -49,6 +49,9 @@ void VelocityProblem::assemble(FrictionModel model, const Bodies& bodies, const 
     return;
   }
   ConeProblem cones;
+  if (auto* used = std::get_if<ConeProblem>(&form_)) {
+    cones = std::move(*used);
+  }
   assemble_cones(bodies, free_state, contacts, allowance, cones, joints);
   if (model == FrictionModel::kBox) {
     make_box(cones);
