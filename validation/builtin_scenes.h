@@ -25,7 +25,8 @@ struct BuiltinScene {
 
 /// Runs a built-in scene and fills its report. @throws RunInterrupted
 [[nodiscard]] SceneReport validate_builtin(const BuiltinScene& builtin, const RunOptions& options);
-/// Runs a scene from outside under the generic checks. @throws RunInterrupted
+/// Runs a scene from outside under the generic checks. A run that is stopped is kept as far as it
+/// came, with a notice.
 [[nodiscard]] SceneReport validate_scene(Scene scene, const RunOptions& options);
 
 // The checks, one scene family a file in validation/scenes/. Each documents its closed forms.
@@ -40,5 +41,13 @@ void check_mass_ratio(const Scene& scene, const RunOptions& options, SceneReport
 void check_newtons_cradle(const Scene& scene, const RunOptions& options, SceneReport& report);
 void check_ball_between_walls(const Scene& scene, const RunOptions& options, SceneReport& report);
 void check_rod_on_supports(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_rolling(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_headings(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_resting_shapes(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_landing_shapes(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_tipping(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_dominoes(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_dzhanibekov(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_elastic_grid(const Scene& scene, const RunOptions& options, SceneReport& report);
 
 }  // namespace signorini::validation

@@ -31,7 +31,8 @@ bool is_finite(const std::vector<BodySample>& sample) {
 
 }  // namespace
 
-Track run_bullet(const Scene& scene, const BulletProfile& profile, const StopFlag* stop) {
+Track run_bullet(const Scene& scene, const BulletProfile& profile, const StopFlag* stop,
+                 const StepWatcher& watch) {
   BulletWorld world(scene, profile);
   SceneContacts ruler(scene);
   Track track;
@@ -55,6 +56,7 @@ Track run_bullet(const Scene& scene, const BulletProfile& profile, const StopFla
     world.step(scene.step);
     track.wall_seconds += std::chrono::duration<double>(Clock::now() - start).count();
     ++track.steps;
+    if (watch) watch(track.engine, k, steps);
     std::vector<BodySample> sample = world.sample();
     if (!is_finite(sample)) {
       track.broke_down = true;

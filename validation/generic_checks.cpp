@@ -72,8 +72,9 @@ void check_free_fall(const Scene& scene, const Runs& runs, SceneReport& report) 
 }
 
 void compare_with_bullet(const Scene& scene, const Runs& runs, SceneReport& report) {
-  if (!runs.signorini || !runs.bullet || runs.signorini->broke_down || runs.bullet->broke_down) {
-    return;
+  if (!runs.signorini || !runs.bullet) return;
+  for (const Track* track : {&*runs.signorini, &*runs.bullet}) {
+    if (track->broke_down || track->interrupted) return;
   }
   Table table;
   table.title = "Where the bodies end";

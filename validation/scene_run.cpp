@@ -49,6 +49,12 @@ void check_every_step(const Track& track, UnsolvedSteps unsolved, SceneReport& r
                                   track.broke_down ? 1.0 : 0.0, 0.0));
 }
 
+void say_if_stopped(const Scene& scene, const Track& track, SceneReport& report) {
+  if (!track.interrupted) return;
+  report.notices.push_back(fmt::format("stopped: the run of {} ended after {} of {} steps",
+                                       track.engine, track.steps, scene.step_count()));
+}
+
 Series series_of(const Track& track, const Measure& measure) {
   Series series;
   series.name = track.engine;
@@ -64,14 +70,14 @@ Series series_of(const Track& track, const Measure& measure) {
 Track run_ours(const Scene& scene, const TimeStepSettings& settings, const RunOptions& options) {
   TimeStepSettings recorded = settings;
   recorded.lcp.recorder = options.recorder;
-  Track track = run_signorini(scene, recorded, options.stop);
-  if (track.interrupted) throw RunInterrupted{};
+  Track track = run_signorini(scene, recorded, options.stop, options.watch);
+  if (track.interrupted && !options.keep_stopped) throw RunInterrupted{};
   return track;
 }
 
 Track run_theirs(const Scene& scene, const BulletProfile& profile, const RunOptions& options) {
-  Track track = run_bullet(scene, profile, options.stop);
-  if (track.interrupted) throw RunInterrupted{};
+  Track track = run_bullet(scene, profile, options.stop, options.watch);
+  if (track.interrupted && !options.keep_stopped) throw RunInterrupted{};
   return track;
 }
 
@@ -86,12 +92,14 @@ Runs run_engines(const Scene& scene, const RunOptions& options, SceneReport& rep
     append(describe(settings), report.settings);
     runs.signorini = run_ours(scene, settings, options);
     report.signorini_seconds = runs.signorini->wall_seconds;
+    say_if_stopped(scene, *runs.signorini, report);
     check_every_step(*runs.signorini, unsolved, report);
   }
-  if (options.bullet) {
+  if (options.bullet && !(runs.signorini && runs.signorini->interrupted)) {
     append(options.profile.describe(), report.settings);
     runs.bullet = run_theirs(scene, options.profile, options);
     report.bullet_seconds = runs.bullet->wall_seconds;
+    say_if_stopped(scene, *runs.bullet, report);
     for (const std::string& remark : runs.bullet->remarks) {
       report.settings.push_back("Bullet: " + remark);
     }

@@ -21,10 +21,12 @@ struct RunOptions {
   std::optional<double> duration;  ///< s; overrides the scene's own
   BulletProfile profile = BulletProfile::neutral();
   const StopFlag* stop = nullptr;
+  StepWatcher watch = nullptr;             ///< empty: nobody watches
+  bool keep_stopped = false;               ///< a run that was stopped is kept, shorter, as it is
   lcp::SolveRecorder* recorder = nullptr;  ///< is told of every contact problem of ours
 };
 
-/// The run was stopped: the scene has no report.
+/// The run was stopped, and is not kept: the scene has no report.
 struct RunInterrupted {};
 
 /// Both engines' runs of one scene; null where the engine was not asked for.

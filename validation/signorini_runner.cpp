@@ -64,7 +64,8 @@ TimeStepSettings step_settings(const Scene& scene) {
   return settings;
 }
 
-Track run_signorini(const Scene& scene, const TimeStepSettings& settings, const StopFlag* stop) {
+Track run_signorini(const Scene& scene, const TimeStepSettings& settings, const StopFlag* stop,
+                    const StepWatcher& watch) {
   SceneContacts contacts(scene);
   SceneContacts ruler(scene);
   TimeStepper stepper(scene.bodies, contacts, settings);
@@ -91,6 +92,7 @@ Track run_signorini(const Scene& scene, const TimeStepSettings& settings, const 
     stepper.step(state, report);
     track.wall_seconds += std::chrono::duration<double>(Clock::now() - start).count();
     ++track.steps;
+    if (watch) watch(track.engine, k, steps);
     const double time = static_cast<double>(k) * settings.step;
     count_ending(report, time, track);
     if (!is_finite(state)) {

@@ -18,8 +18,10 @@ namespace signorini::validation {
 /// not solved is counted, its best iterate used, and the run goes on; a run whose numbers stop
 /// being finite ends there (Track::broke_down).
 /// @param stop null, or a flag that ends the run early (Track::interrupted)
+/// @param watch empty, or told after every step
 [[nodiscard]] Track run_signorini(const Scene& scene, const TimeStepSettings& settings,
-                                  const StopFlag* stop = nullptr);
+                                  const StopFlag* stop = nullptr,
+                                  const StepWatcher& watch = nullptr);
 
 /// The text of an integrator, for example "energy-momentum".
 [[nodiscard]] std::string_view integrator_name(Integrator integrator);

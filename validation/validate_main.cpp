@@ -11,6 +11,7 @@
 #endif
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -98,7 +99,11 @@ std::vector<Job> load_jobs(const Arguments& arguments) {
     if (builtin != nullptr) {
       jobs.push_back({name, builtin, {}});
     } else {
+      const bool terminal = isatty(STDOUT_FILENO) != 0;
+      if (terminal) fmt::print("reading {} ...", name);
+      std::fflush(stdout);
       jobs.push_back({name, nullptr, read_scene_file(name, options)});
+      if (terminal) fmt::print("\r\x1b[K");
     }
   }
   return jobs;
@@ -134,15 +139,31 @@ std::string joined(int argc, char** argv) {
   return line;
 }
 
-/// "running ..." on a terminal, one line a scene everywhere.
+/// On a terminal one line that is written over: what runs, how far it is, the time left of this
+/// engine's run. Everywhere one line a finished scene.
 class Progress {
  public:
   explicit Progress(std::size_t count) : count_(count), terminal_(isatty(STDOUT_FILENO) != 0) {}
 
   void start(std::size_t index, const std::string& name) {
+    scene_ = fmt::format("[{}/{}] {}", index + 1, count_, name);
+    engine_.clear();
+    show("");
+  }
+  void step(const std::string& engine, long step, long steps) {
     if (!terminal_) return;
-    fmt::print("[{}/{}] {} ...", index + 1, count_, name);
-    std::fflush(stdout);
+    const Clock::time_point now = Clock::now();
+    if (engine != engine_ || step <= 1) {
+      engine_ = engine;
+      engine_start_ = now;
+      shown_ = now;
+      return;
+    }
+    if (now - shown_ < std::chrono::milliseconds(200)) return;
+    shown_ = now;
+    const double spent = std::chrono::duration<double>(now - engine_start_).count();
+    const double left = spent * static_cast<double>(steps - step) / static_cast<double>(step - 1);
+    show(fmt::format(": {} {} of {} steps, {} left", engine, step, steps, duration_text(left)));
   }
   void finish(std::size_t index, const SceneReport& report) {
     int failed = 0;
@@ -161,18 +182,38 @@ class Progress {
   void interrupted() { fmt::print("{}stopped\n", terminal_ ? "\r\x1b[K" : ""); }
 
  private:
+  using Clock = std::chrono::steady_clock;
+
+  static std::string duration_text(double seconds) {
+    if (seconds < 90.0) return fmt::format("{:.0f} s", seconds);
+    if (seconds < 5400.0) return fmt::format("{:.0f} min", seconds / 60.0);
+    return fmt::format("{:.1f} h", seconds / 3600.0);
+  }
+  void show(const std::string& what) const {
+    if (!terminal_) return;
+    fmt::print("\r\x1b[K{}{} ...", scene_, what);
+    std::fflush(stdout);
+  }
+
   std::size_t count_;
   bool terminal_;
+  std::string scene_;
+  std::string engine_;
+  Clock::time_point engine_start_;
+  Clock::time_point shown_;
 };
 
 Report run_jobs(std::vector<Job> jobs, const Arguments& arguments,
                 signorini::lcp::SolveRecorder* recorder) {
-  const RunOptions options = run_options(arguments, recorder);
+  RunOptions options = run_options(arguments, recorder);
   Report report;
   report.version = SIGNORINI_VERSION;
   report.engines = fmt::format("Bullet {} (double precision), libsdformat {}", bullet_version(),
                                sdformat_version());
   Progress progress(jobs.size());
+  options.watch = [&progress](const std::string& engine, long step, long steps) {
+    progress.step(engine, step, steps);
+  };
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     Job& job = jobs[i];
     progress.start(i, job.name);
@@ -182,6 +223,10 @@ Report run_jobs(std::vector<Job> jobs, const Arguments& arguments,
       scene.command = command_for(arguments, job.name);
       progress.finish(i, scene);
       report.scenes.push_back(std::move(scene));
+      if (stop_requested.load()) {
+        report.partial = true;
+        break;
+      }
     } catch (const RunInterrupted&) {
       progress.interrupted();
       report.partial = true;

@@ -86,6 +86,67 @@ TEST(HarnessCanFail, StackThatIsPushed) {
   EXPECT_EQ(find_check(report, "greatest motion")->judged(), Verdict::kFail);
 }
 
+TEST(HarnessCanFail, RollingWithMoreFrictionThanTheClosedForm) {
+  // The closed form knows the friction of the first two colliders; a third one is rougher.
+  Scene scene = builtin("slipping-capsule");
+  collision::Collider rough = scene.colliders[1];
+  rough.material.friction = 1.0;
+  scene.colliders[0].material.friction = 1.0;
+  scene.colliders.push_back(rough);
+  const SceneReport report = checked("slipping-capsule", scene);
+  EXPECT_EQ(find_check(report, "speed at the end")->judged(), Verdict::kFail);
+}
+
+TEST(HarnessCanFail, BlocksThatTurn) {
+  Scene scene = builtin("sliding-headings");
+  const Vec3 v = velocity(scene.bodies[2], scene.state[2]).linear;
+  set_velocity(scene.bodies[2], {v, Vec3(0.0, 0.0, 3.0)}, scene.state[2]);
+  const SceneReport report = checked("sliding-headings", scene);
+  EXPECT_EQ(find_check(report, "exact cone: greatest drift")->judged(), Verdict::kFail);
+}
+
+TEST(HarnessCanFail, ShapeThatLandsOnItsRim) {
+  Scene scene = builtin("landing-shapes");
+  const int body = scene.body("cylinder-upright");
+  scene.state[body].q = scene.state[body].q * Quat(Eigen::AngleAxisd(0.05, Vec3::UnitX()));
+  const SceneReport report = checked("landing-shapes", scene);
+  EXPECT_EQ(find_check(report, "greatest turn")->judged(), Verdict::kFail);
+}
+
+TEST(HarnessCanFail, CubeThatSlipsOffItsEdge) {
+  Scene scene = builtin("box-on-an-edge");
+  scene.colliders[0].material.friction = 0.0;
+  const SceneReport report = checked("box-on-an-edge", scene);
+  EXPECT_EQ(report.verdict(), Verdict::kFail);
+}
+
+TEST(HarnessCanFail, DominoThatFallsOutOfTurn) {
+  Scene scene = builtin("dominoes");
+  scene.duration = 0.3;
+  set_velocity(scene.bodies[3], {Vec3(0.6, 0.0, -0.05), Vec3(0.0, 2.0, 0.0)}, scene.state[3]);
+  const SceneReport report = checked("dominoes", scene);
+  EXPECT_EQ(find_check(report, "before the one before")->judged(), Verdict::kFail);
+  EXPECT_EQ(find_check(report, "still standing")->judged(), Verdict::kFail);
+}
+
+TEST(HarnessCanFail, BlockThatIsTouchedTurnsOverAtOtherTimes) {
+  // A plane below the block, which the closed form does not know of.
+  Scene scene = builtin("dzhanibekov");
+  scene.duration = 12.0;
+  scene.gravity = Vec3(0.0, 0.0, -9.81);
+  Body ground;
+  ground.kind = BodyKind::kFixed;
+  scene.bodies.push_back(ground);
+  scene.state.emplace_back();
+  scene.state.back().x.z() = -1.0;
+  collision::Collider plane;
+  plane.body = 1;
+  plane.shape = collision::HalfSpace{};
+  scene.colliders.push_back(plane);
+  EXPECT_EQ(find_check(checked("dzhanibekov", scene), "times it turned over")->judged(),
+            Verdict::kFail);
+}
+
 TEST(HarnessCanFail, LandingOnAnEdge) {
   Scene scene = builtin("box-landing-flat");
   scene.state[0].q = Quat(Eigen::AngleAxisd(0.1, Vec3::UnitY()));
@@ -168,7 +229,10 @@ INSTANTIATE_TEST_SUITE_P(BuiltIn, QuickScenes,
                          testing::Values("free-flight", "ball-drop-e0", "ball-drop-e0.5",
                                          "ball-drop-e0.9", "ball-drop-e1", "wedge",
                                          "newtons-cradle", "ball-between-walls",
-                                         "ball-between-tilted-walls", "rod-on-two-supports"),
+                                         "ball-between-tilted-walls", "rod-on-two-supports",
+                                         "rolling-sphere", "rolling-cylinder", "slipping-capsule",
+                                         "sliding-headings", "landing-shapes", "box-on-an-edge",
+                                         "dzhanibekov"),
                          [](const auto& scene) {
                            std::string name = scene.param;
                            for (char& c : name) c = std::isalnum(c) ? c : '_';

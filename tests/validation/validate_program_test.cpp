@@ -149,7 +149,32 @@ TEST_F(Program, InterruptLeavesAValidPartialReport) {
             "' || ! kill -0 $pid; do sleep 0.05; done; kill -INT $pid; "
             "wait $pid");
   EXPECT_EQ(outcome.exit_code, 130) << outcome.output;
-  EXPECT_EQ(report()["scenes"].size(), 1u);
+  const nlohmann::json written = report();
+  EXPECT_TRUE(written["partial"].get<bool>());
+  // The second is there as far as it came, or not at all if it had not begun.
+  ASSERT_GE(written["scenes"].size(), 1u);
+  EXPECT_EQ(written["scenes"][0]["notices"].dump().find("stopped"), std::string::npos);
+  if (written["scenes"].size() > 1) {
+    EXPECT_NE(written["scenes"][1]["notices"].dump().find("stopped: the run of signorini ended"),
+              std::string::npos);
+  }
+}
+
+TEST_F(Program, ATerminalShowsStepsAndTimeLeftAndALogDoesNot) {
+  if (shell("command -v script").exit_code != 0) GTEST_SKIP() << "no program 'script'";
+  const std::string scene = write("ball.sdf", kBallOnPlane);
+  // Stopped once the time left is shown.
+  const std::string log = (folder_ / "log").string();
+  const std::string commands = write(
+      "commands.sh", std::string(SIGNORINI_VALIDATE) + " --out '" + out() +
+                         "' --engine signorini --duration 1e5 '" + scene +
+                         "' & pid=$!\nuntil grep -q ' left' '" + log +
+                         "' || ! kill -0 $pid; do sleep 0.05; done\nkill -INT $pid\nwait $pid\n");
+  const Outcome outcome = shell("script -qfec \"sh '" + commands + "'\" '" + log + "'");
+  EXPECT_EQ(outcome.exit_code, 130) << outcome.output;
+  EXPECT_NE(outcome.output.find("signorini "), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find(" steps, "), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find(" left"), std::string::npos) << outcome.output;
   EXPECT_TRUE(report()["partial"].get<bool>());
 }
 
