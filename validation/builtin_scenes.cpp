@@ -36,6 +36,8 @@ constexpr BuiltinScene kScenes[] = {
     {"dominoes", check_dominoes},
     {"dzhanibekov", check_dzhanibekov},
     {"elastic-balls", check_elastic_grid},
+    {"card-house", check_resting_shapes},
+    {"arch", check_resting_shapes},
 };
 
 SceneReport start_report(const Scene& scene) {

@@ -105,6 +105,10 @@ class SceneBuilder {
       scene_.step = physics->MaxStepSize();
     }
     read_extensions(*world.Element());
+    add_models(world);
+  }
+
+  void add_models(const sdf::World& world) {
     for (std::uint64_t i = 0; i < world.ModelCount(); ++i) {
       add_model(*world.ModelByIndex(i), Pose(), "");
     }
@@ -367,7 +371,8 @@ void add_ground(Scene& scene, double height) {
       "added: a fixed half-space z <= {} m, friction 1, restitution 1 (--ground)", height));
 }
 
-/// Worlds of more models than this are read one model at a time.
+/// Worlds of more models than this are read in pieces: some 3 MB of memory a model, and a start of
+/// libsdformat a piece.
 constexpr int kMostModelsAtOnce = 100;
 
 sdf::SDFPtr parse(const std::string& text, const std::string& file, SceneFormat format,
@@ -384,10 +389,10 @@ sdf::SDFPtr parse(const std::string& text, const std::string& file, SceneFormat 
   return document;
 }
 
-/// Adds the world or the model of one document.
+/// Adds the world or the model of one document; of a piece of a world, the models alone.
 void add_document(const std::string& text, const std::string& file, SceneFormat format,
                   const std::string& source, const ConsoleCapture& console, SdfSurvey& survey,
-                  SceneBuilder& builder) {
+                  SceneBuilder& builder, bool is_piece = false) {
   const sdf::SDFPtr document = parse(text, file, format, source, console);
   survey.walk(document->Root());
   sdf::Root root;
@@ -400,7 +405,9 @@ void add_document(const std::string& text, const std::string& file, SceneFormat 
   if (root.WorldCount() == 0 && root.Model() == nullptr) {
     throw InputError(source + ": holds neither a <world> nor a model");
   }
-  if (root.WorldCount() == 1) {
+  if (is_piece) {
+    builder.add_models(*root.WorldByIndex(0));
+  } else if (root.WorldCount() == 1) {
     builder.add_world(*root.WorldByIndex(0));
   } else {
     builder.add_model(*root.Model(), Pose(), "");
@@ -429,13 +436,13 @@ Scene read(const std::string& text, const std::string& file, const std::string& 
   SdfSurvey survey(source, options.skip_unsupported);
   SceneBuilder builder(scene, extras, sdf_extras, survey);
   if (format == SceneFormat::kSdf && can_be_split(xml, kMostModelsAtOnce)) {
-    const SplitWorld split = split_world(xml, source);
+    const SplitWorld split = split_world(xml, source, kMostModelsAtOnce);
     for (const auto& [name, count] : split.without_physics) {
       survey.count_without_physics(name, count);
     }
     add_document(split.world, "", format, source, console, survey, builder);
-    for (const std::string& model : split.models) {
-      add_document(model, "", format, source, console, survey, builder);
+    for (const std::string& models : split.models) {
+      add_document(models, "", format, source, console, survey, builder, true);
     }
   } else {
     add_document(checked_text, file, format, source, console, survey, builder);

@@ -19,14 +19,31 @@
 #include <sdf/sdf.hh>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 namespace signorini::validation {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// The numbers of a child, which check_numbers() has seen. libsdformat keeps elements that it does
-/// not know (<cone>) as text, so all are read as text.
+/// The numbers of an element, which check_numbers() has seen. libsdformat keeps elements that it
+/// does not know (<cone>) as text, so all are read as text.
+template <int N>
+Eigen::Matrix<double, N, 1> as_numbers(const sdf::Element& element, const std::string& field,
+                                       const ShapeUse& use) {
+  const std::string given = element.GetValue() == nullptr ? "" : element.GetValue()->GetAsString();
+  std::istringstream stream(given);
+  stream.imbue(std::locale::classic());
+  Eigen::Matrix<double, N, 1> values;
+  for (int k = 0; k < N; ++k) stream >> values[k];
+  if (!stream) {
+    throw InputError(
+        fmt::format("{}: <{}>: must be {} numbers, got '{}'", use.where, field, N, given));
+  }
+  return values;
+}
+
 template <int N>
 Eigen::Matrix<double, N, 1> numbers(const sdf::ElementPtr& shape, const std::string& field,
                                     const ShapeUse& use) {
@@ -34,15 +51,7 @@ Eigen::Matrix<double, N, 1> numbers(const sdf::ElementPtr& shape, const std::str
   if (child == nullptr || child->GetValue() == nullptr) {
     throw InputError(fmt::format("{}: <{}>: <{}> is missing", use.where, shape->GetName(), field));
   }
-  std::istringstream stream(child->GetValue()->GetAsString());
-  stream.imbue(std::locale::classic());
-  Eigen::Matrix<double, N, 1> values;
-  for (int k = 0; k < N; ++k) stream >> values[k];
-  if (!stream) {
-    throw InputError(fmt::format("{}: <{}>: <{}>: must be {} numbers, got '{}'", use.where,
-                                 shape->GetName(), field, N, child->GetValue()->GetAsString()));
-  }
-  return values;
+  return as_numbers<N>(*child, field, use);
 }
 
 double number(const sdf::ElementPtr& shape, const std::string& field, const ShapeUse& use) {
@@ -57,6 +66,89 @@ Vec3 plane_normal(const sdf::ElementPtr& plane, const ShapeUse& use) {
   return normal.normalized();
 }
 
+using Vec2 = Eigen::Vector2d;
+
+double cross(const Vec2& a, const Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+/// The corners of a polygon, counter-clockwise, without points that repeat or lie on a line.
+std::vector<Vec2> corners_of(std::vector<Vec2> points) {
+  double twice_area = 0.0;
+  double size = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec2& next = points[(i + 1) % points.size()];
+    twice_area += cross(points[i] - points[0], next - points[0]);
+    size = std::max(size, (next - points[0]).norm());
+  }
+  if (twice_area < 0.0) std::reverse(points.begin(), points.end());
+  for (std::size_t i = 0; i < points.size() && points.size() > 2;) {
+    const Vec2& before = points[(i + points.size() - 1) % points.size()];
+    const Vec2& after = points[(i + 1) % points.size()];
+    const Vec2 in = points[i] - before;
+    const Vec2 out = after - points[i];
+    // 1e-9 of the size: what make_hull() takes for one plane.
+    const bool on_a_line = std::abs(cross(in, out)) <= 1e-9 * size * (in.norm() + out.norm());
+    if (on_a_line && in.dot(out) >= 0.0) {
+      points.erase(points.begin() + static_cast<std::ptrdiff_t>(i));
+      i = 0;
+    } else {
+      ++i;
+    }
+  }
+  return points;
+}
+
+/// A prism from z = 0 to the height, as in Gazebo.
+collision::ConvexHull prism(const std::vector<Vec2>& corners, double height) {
+  const int n = static_cast<int>(corners.size());
+  std::vector<Vec3> vertices;
+  std::vector<int> bottom;
+  std::vector<int> top;
+  std::vector<std::vector<int>> faces;
+  for (int i = 0; i < n; ++i) vertices.emplace_back(corners[i].x(), corners[i].y(), 0.0);
+  for (int i = 0; i < n; ++i) {
+    vertices.emplace_back(corners[i].x(), corners[i].y(), height);
+    bottom.push_back(n - 1 - i);
+    top.push_back(n + i);
+    faces.push_back({i, (i + 1) % n, n + (i + 1) % n, n + i});
+  }
+  faces.push_back(bottom);
+  faces.push_back(top);
+  return collision::make_hull(std::move(vertices), std::move(faces));
+}
+
+collision::Shape read_polyline(const sdf::ElementPtr& polyline, const ShapeUse& use) {
+  if (polyline->GetNextElement("polyline") != nullptr) {
+    throw InputError(use.where + ": <polyline>: several in one <geometry> are not supported");
+  }
+  std::vector<Vec2> points;
+  for (sdf::ElementPtr point = polyline->FindElement("point"); point != nullptr;
+       point = point->GetNextElement("point")) {
+    points.push_back(as_numbers<2>(*point, "point", use));
+  }
+  if (points.size() < 3) {
+    throw InputError(fmt::format("{}: <polyline>: must have at least 3 <point>s, got {}", use.where,
+                                 points.size()));
+  }
+  const double height = number(polyline, "height", use);
+  const std::vector<Vec2> corners = corners_of(std::move(points));
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Vec2& a = corners[i];
+    const Vec2& b = corners[(i + 1) % corners.size()];
+    const Vec2& c = corners[(i + 2) % corners.size()];
+    if (!(cross(b - a, c - b) > 0.0)) {
+      throw InputError(fmt::format("{}: <polyline>: a concave one is not supported (corner {} {})",
+                                   use.where, b.x(), b.y()));
+    }
+  }
+  try {
+    return prism(corners, height);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(use.where + ": <polyline>: " + error.what());
+  }
+}
+
 }  // namespace
 
 collision::Shape ShapeReader::read(const sdf::ElementPtr& geometry, const ShapeUse& use,
@@ -67,6 +159,7 @@ collision::Shape ShapeReader::read(const sdf::ElementPtr& geometry, const ShapeU
   if (kind == "sphere") return collision::Sphere{number(shape, "radius", use)};
   if (kind == "ellipsoid") return collision::Ellipsoid{numbers<3>(shape, "radii", use)};
   if (kind == "mesh") return read_mesh(shape, use);
+  if (kind == "polyline") return read_polyline(shape, use);
   if (kind == "plane") {
     local.orientation =
         local.orientation * Quat::FromTwoVectors(Vec3::UnitZ(), plane_normal(shape, use));

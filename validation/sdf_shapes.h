@@ -18,7 +18,8 @@ struct ShapeUse {
   bool capsule_as_cylinder = false;  ///< a URDF's capsule, which libsdformat lacks
 };
 
-/// Turns <geometry> into shapes: box, sphere, cylinder, capsule, ellipsoid, cone, plane and mesh.
+/// Turns <geometry> into shapes: box, sphere, cylinder, capsule, ellipsoid, cone, plane, mesh, and
+/// one convex polyline (a prism from z = 0 up to its height, as in Gazebo).
 ///
 /// A mesh is a convex hull if its body is dynamic or the file says optimization="convex_hull" (or
 /// "convex_decomposition", of which this makes one hull), else its triangles as they are. What was

@@ -159,6 +159,8 @@ std::optional<NumberRule> sdf_rule(const XMLElement& element) {
   const std::string_view name = element.Name();
   const XMLElement* parent = element.Parent() ? element.Parent()->ToElement() : nullptr;
   const std::string_view parent_name = parent == nullptr ? "" : parent->Name();
+  if (name == "point" && parent_name == "polyline") return NumberRule{2};
+  if (name == "height" && parent_name == "polyline") return NumberRule{1, Bound::kPositive};
   if (name == "size" && parent_name == "box") return NumberRule{3, Bound::kPositive};
   if (name == "pose") {
     const char* format = element.Attribute("rotation_format");
@@ -211,7 +213,7 @@ std::string unsupported_shape(std::string_view shape, SceneFormat format) {
 #endif
   const std::string supported =
       format == SceneFormat::kSdf
-          ? fmt::format("box, sphere, cylinder, capsule, ellipsoid, cone, plane{}", kMesh)
+          ? fmt::format("box, sphere, cylinder, capsule, ellipsoid, cone, plane, polyline{}", kMesh)
           : fmt::format("box, sphere, cylinder, capsule{}", kMesh);
   if ((", " + supported + ",").find(fmt::format(", {},", shape)) != std::string::npos) return "";
   return fmt::format("collision shape <{}> is not supported (supported: {})", shape, supported);

@@ -2,6 +2,7 @@
 #include <signorini/validation/xml_check.h>
 #include <signorini/validation/xml_split.h>
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <set>
 #include <string_view>
@@ -101,7 +102,8 @@ bool can_be_split(const tinyxml2::XMLDocument& document, int most) {
   return apart && models > most;
 }
 
-SplitWorld split_world(const tinyxml2::XMLDocument& document, const std::string& source) {
+SplitWorld split_world(const tinyxml2::XMLDocument& document, const std::string& source,
+                       int models_each) {
   const XMLElement& root = *document.RootElement();
   const XMLElement& world = *root.FirstChildElement("world");
   SplitWorld split;
@@ -109,18 +111,26 @@ SplitWorld split_world(const tinyxml2::XMLDocument& document, const std::string&
   whole.print(root, false);
   split.world = whole.text();
   std::set<std::string> names;
+  std::vector<const XMLElement*> models;
   for_each_child(world, [&](const XMLElement& child) {
     if (std::string_view(child.Name()) != "model") return;
     const char* name = child.Attribute("name");
     if (name != nullptr && !names.insert(name).second) {
       throw InputError(locate(child, source) + ": another model of the world has this name");
     }
-    LinePrinter one(split);
-    one.open(root);
-    one.print(child, true);
-    one.close(root);
-    split.models.push_back(one.text());
+    models.push_back(&child);
   });
+  for (std::size_t begin = 0; begin < models.size(); begin += models_each) {
+    LinePrinter some(split);
+    some.open(root);
+    some.open(world);
+    for (std::size_t i = begin; i < std::min(models.size(), begin + models_each); ++i) {
+      some.print(*models[i], true);
+    }
+    some.close(world);
+    some.close(root);
+    split.models.push_back(some.text());
+  }
   return split;
 }
 

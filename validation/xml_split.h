@@ -14,7 +14,7 @@ namespace signorini::validation {
 /// link could have into every link, gigabytes for thousands of models at once.
 struct SplitWorld {
   std::string world;                           ///< the document without the world's models
-  std::vector<std::string> models;             ///< one document a model
+  std::vector<std::string> models;             ///< documents of a world of some of its models alone
   std::map<std::string, int> without_physics;  ///< elements left out (xml_check.h), and how many
 };
 
@@ -22,8 +22,9 @@ struct SplitWorld {
 /// is included, the world has no frames or joints, and no model's pose is relative to anything.
 [[nodiscard]] bool can_be_split(const tinyxml2::XMLDocument& document, int most);
 
-/// The pieces. Every element keeps its line number. @throws InputError: two models of one name.
+/// The pieces, of `models_each` models or less. Every element keeps its line number.
+/// @throws InputError: two models of one name.
 [[nodiscard]] SplitWorld split_world(const tinyxml2::XMLDocument& document,
-                                     const std::string& source);
+                                     const std::string& source, int models_each);
 
 }  // namespace signorini::validation

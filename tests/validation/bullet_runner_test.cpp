@@ -1,5 +1,8 @@
+#include <signorini/collision/compound.h>
+#include <signorini/collision/mesh.h>
 #include <signorini/validation/builtin_scenes.h>
 #include <signorini/validation/bullet_runner.h>
+#include <signorini/validation/bullet_shapes.h>
 #include <signorini/validation/input_error.h>
 #include <signorini/validation/sdf_reader.h>
 
@@ -90,6 +93,92 @@ TEST(BulletRunner, OffDiagonalInertiaMovesLikeTheSameBodyInOtherAxes) {
 TEST(BulletRunner, HalfSpaceOfAnyNormalCarries) {
   const Track track = run_bullet(builtin("slope-stick"), BulletProfile::neutral());
   EXPECT_LT((track.last(0).pose.position - track.bodies[0][0].pose.position).norm(), 0.1);
+}
+
+/// A ball of radius 0.5 m over a floor, restitution 0.5.
+Scene ball_over(const collision::Shape& floor) {
+  Scene scene = builtin("ball-drop-e0.5");
+  scene.colliders[1].shape = floor;
+  return scene;
+}
+
+TEST(BulletRunner, MaterialsAreFoundThroughMeshesAndCompounds) {
+  const double half = 10.0;
+  const collision::TriangleMesh mesh = collision::make_mesh(
+      {Vec3(-half, -half, 0), Vec3(half, -half, 0), Vec3(half, half, 0), Vec3(-half, half, 0)},
+      {{0, 1, 2}, {0, 2, 3}});
+  const collision::Compound compound = collision::make_compound(
+      {{collision::Box{Vec3(half, half, 0.5)}, Pose{Vec3(0, 0, -0.5), Quat::Identity()}},
+       {collision::Sphere{1.0}, Pose{Vec3(5, 5, 0), Quat::Identity()}}});
+  const collision::TriangleMesh field =
+      collision::make_height_field(std::vector<double>(25, 0.0), 5, 5, 4.0, 4.0);
+  for (const collision::Shape& floor :
+       {collision::Shape(mesh), collision::Shape(compound), collision::Shape(field)}) {
+    const auto [after, before] =
+        first_bounce(run_bullet(ball_over(floor), BulletProfile::neutral()));
+    ASSERT_GT(before, 1.0);
+    EXPECT_NEAR(after / before, 0.5, 1e-6) << floor.index();
+  }
+}
+
+TEST(BulletRunner, EveryShapeIsCarriedWhereItStands) {
+  Scene scene = builtin("resting-shapes");
+  scene.duration = 0.5;
+  const Track track = run_bullet(scene, BulletProfile::neutral());
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    // Bullet's margins are below 1 mm here; what it sinks and rocks comes on top.
+    EXPECT_NEAR(track.last(static_cast<int>(i)).pose.position.z(), scene.state[i].x.z(), 0.02)
+        << scene.bodies[i].name;
+  }
+  const std::string all = [&] {
+    std::string lines;
+    for (const std::string& line : track.remarks) lines += line + "\n";
+    return lines;
+  }();
+  EXPECT_NE(all.find("ellipsoids, which Bullet lacks"), std::string::npos) << all;
+  EXPECT_NE(all.find("cones are larger"), std::string::npos) << all;
+}
+
+TEST(BulletShapes, EllipsoidIsExactAndTheOthersHaveTheirSizes) {
+  const auto extent = [](const collision::Shape& shape, int axis) {
+    const std::vector<BulletShape> made = make_bullet_shapes(shape, 1.0);
+    btVector3 low, high;
+    made.at(0).shape->getAabb(btTransform::getIdentity(), low, high);
+    return 0.5 * (high[axis] - low[axis]);
+  };
+  const auto* ellipsoid = dynamic_cast<const btConvexShape*>(
+      make_bullet_shapes(collision::Ellipsoid{Vec3(1.0, 2.0, 0.5)}, 1.0).at(0).shape.release());
+  for (const btVector3& n : {btVector3(1, 0, 0), btVector3(0.6, 0.8, 0), btVector3(0, -0.6, 0.8)}) {
+    const btScalar expected = (btVector3(1.0, 2.0, 0.5) * n).length();
+    EXPECT_NEAR(ellipsoid->localGetSupportingVertex(n).dot(n), expected, 1e-12);
+  }
+  delete ellipsoid;
+  EXPECT_NEAR(extent(collision::Ellipsoid{Vec3(1.0, 2.0, 0.5)}, 1), 2.0, 1e-12);
+  EXPECT_NEAR(extent(collision::Capsule{0.2, 0.5}, 2), 0.7, 1e-12);
+  EXPECT_NEAR(extent(collision::Cylinder{0.2, 0.5}, 2), 0.5, 1e-12);
+  // Larger by the margin of 1/1000 of the smallest size, which bounds count twice.
+  EXPECT_NEAR(extent(collision::Cone{0.2, 0.5}, 2), 0.5, 4.1e-4);
+  EXPECT_GT(extent(collision::Cone{0.2, 0.5}, 2), 0.5);
+}
+
+TEST(BulletRunner, FiltersOfCollidersAreTheScenes) {
+  for (const bool compound : {false, true}) {
+    Scene scene = builtin("ball-drop-e0");
+    scene.duration = 1.0;
+    scene.colliders[0].filter = {2, 2};
+    scene.colliders[1].filter = {4, 4};
+    if (compound) {
+      // A second shape that meets the plane, out of its reach: the pair of bodies stays.
+      collision::Collider other = scene.colliders[0];
+      other.filter = {4, 4};
+      other.local.position = Vec3(0.0, 0.0, 100.0);
+      other.shape = collision::Sphere{0.1};
+      scene.colliders.push_back(other);
+    }
+    EXPECT_LT(run_bullet(scene, BulletProfile::neutral()).last(0).pose.position.z(), -1.0);
+    scene.colliders[0].filter = {6, 6};
+    EXPECT_GT(run_bullet(scene, BulletProfile::neutral()).last(0).pose.position.z(), 0.0);
+  }
 }
 
 TEST(BulletRunner, PairsThatNeverCollidePassThroughEachOther) {

@@ -2,11 +2,15 @@
 #include <signorini/validation/checks.h>
 #include <signorini/validation/embedded_scenes.h>
 #include <signorini/validation/generic_checks.h>
+#include <signorini/validation/sdf_reader.h>
 #include <signorini/validation/signorini_runner.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <limits>
+#include <sstream>
 
 namespace signorini::validation {
 namespace {
@@ -212,6 +216,54 @@ TEST(Runs, EngineAndDurationAreTheCallers) {
   EXPECT_EQ(report.verdict(), Verdict::kInformation);
 }
 
+/// Every file of the shared scenes, a few steps in both engines: every step solved, every number
+/// finite. Of the world of 3000 models the first 120.
+class SharedFiles : public testing::TestWithParam<const char*> {};
+
+Scene first_models(const std::string& file, int count) {
+  std::ifstream stream(file);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  std::string world = text.str();
+  std::size_t end = 0;
+  for (int i = 0; i < count; ++i) end = world.find("</model>", end) + 8;
+  return read_scene_text(world.substr(0, end) + "</world></sdf>", file);
+}
+
+TEST_P(SharedFiles, RunInBothEngines) {
+  const std::string file = std::string(SIGNORINI_SHARED_DIR) + "/data/scenes/" + GetParam();
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "../shared is absent";
+  const bool large = std::string(GetParam()).find("3k") != std::string::npos;
+  Scene scene = large ? first_models(file, 120) : read_scene_file(file, {.ground = -1.0});
+  EXPECT_GE(scene.bodies.size(), 2u);
+  RunOptions options;
+  options.duration = 5.0 * scene.step;
+  const SceneReport report = validate_scene(scene, options);
+  EXPECT_EQ(report.verdict(), Verdict::kPass);
+  for (const Check& check : report.checks) {
+    EXPECT_NE(check.judged(), Verdict::kFail) << check.name << ": " << check.value;
+  }
+  EXPECT_GE(report.signorini_seconds, 0.0);
+  EXPECT_GE(report.bullet_seconds, 0.0);
+  ASSERT_TRUE(report.playback.has_value());
+  EXPECT_EQ(report.playback->tracks.size(), 2u);
+  EXPECT_EQ(report.playback->bodies.size(), scene.bodies.size());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, SharedFiles,
+    testing::Values("bullet_block.urdf", "bullet_capsule.urdf", "bullet_cube_small.urdf",
+                    "bullet_sphere_with_restitution.urdf", "bullet_two_cubes.sdf",
+                    "gz-physics_contact.sdf", "gz-physics_falling.world",
+                    "gz-physics_multiple_collisions.sdf", "gz-physics_shapes.world",
+                    "gz-physics_slip_compliance.sdf", "gz-sim_3k_shapes.sdf", "gz-sim_falling.sdf",
+                    "gz-sim_friction.sdf", "gz-sim_rolling_shapes.sdf", "gz-sim_shapes.sdf"),
+    [](const auto& scene) {
+      std::string name = scene.param;
+      for (char& c : name) c = std::isalnum(c) ? c : '_';
+      return name;
+    });
+
 /// The quick built-in scenes, whole: what the default report must show.
 class QuickScenes : public testing::TestWithParam<const char*> {};
 
@@ -232,7 +284,7 @@ INSTANTIATE_TEST_SUITE_P(BuiltIn, QuickScenes,
                                          "ball-between-tilted-walls", "rod-on-two-supports",
                                          "rolling-sphere", "rolling-cylinder", "slipping-capsule",
                                          "sliding-headings", "landing-shapes", "box-on-an-edge",
-                                         "dzhanibekov"),
+                                         "dzhanibekov", "card-house", "elastic-balls"),
                          [](const auto& scene) {
                            std::string name = scene.param;
                            for (char& c : name) c = std::isalnum(c) ? c : '_';

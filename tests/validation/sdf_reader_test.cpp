@@ -275,6 +275,31 @@ TEST(SdfReader, ReadsEveryConvexShape) {
   EXPECT_EQ(ellipsoid.radii, Vec3(1.0, 2.0, 3.0));
 }
 
+TEST(SdfReader, ConvexPolylineIsAPrism) {
+  const auto polyline = [](const std::string& points) {
+    std::string text = "<polyline><height>2</height>";
+    std::istringstream stream(points);
+    for (std::string point; std::getline(stream, point, ',');) {
+      text += "<point>" + point + "</point>";
+    }
+    return model_of(text + "</polyline>");
+  };
+  // Either way round, closed or not, with points along a side.
+  for (const std::string points :
+       {"0 0,1 0,1 1,0 1", "0 1,1 1,1 0,0 0", "0 0,0.5 0,1 0,1 1,0 1,0 0"}) {
+    const Scene scene = read(polyline(points));
+    const auto& hull = std::get<collision::ConvexHull>(scene.colliders.at(0).shape);
+    EXPECT_EQ(hull.data->vertices.size(), 8u) << points;
+    EXPECT_NEAR(hull.data->volume, 2.0, 1e-14) << points;
+    EXPECT_NEAR((hull.data->centre - Vec3(0.5, 0.5, 1.0)).norm(), 0.0, 1e-14) << points;
+  }
+  EXPECT_NAMES(refusal(world(polyline("0 0,2 0,2 1,1 1,1 2,0 2"))), "concave");
+  EXPECT_NAMES(refusal(world(polyline("0 0,1 0"))), "at least 3 <point>s");
+  EXPECT_NAMES(refusal(world(polyline("0 0,1 0,2 0"))), "<polyline>");
+  EXPECT_NAMES(refusal(world(polyline("0 0,1 nan,2 0"))), "<point>");
+  EXPECT_NAMES(refusal(world(polyline("0 0,1 0,1 1 1"))), "2 numbers");
+}
+
 TEST(SdfReader, CollideBitmaskIsAFilter) {
   const auto masked = [](const std::string& mask) {
     return model_of(
@@ -507,7 +532,7 @@ TEST_P(SdfReaderShapes, AreNamedOrSkippedWithANotice) {
   EXPECT_TRUE(mentions(scene, "'odd' has no supported shape left"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Unsupported, SdfReaderShapes, testing::Values("heightmap", "polyline"));
+INSTANTIATE_TEST_SUITE_P(Unsupported, SdfReaderShapes, testing::Values("heightmap", "image"));
 
 TEST(SdfReader, JointsAreNamedOrSkipped) {
   const std::string content =

@@ -106,13 +106,13 @@ TEST_F(Program, BadSceneEndsWith65AndWritesNothing) {
   const Outcome missing = run("/no/such/file.sdf");
   EXPECT_EQ(missing.exit_code, 65);
   EXPECT_NE(missing.output.find("/no/such/file.sdf: cannot be read"), std::string::npos);
-  std::string polyline = kBallOnPlane;
-  polyline.replace(polyline.find("<sphere>"), 8, "<polyline>");
-  polyline.replace(polyline.find("</sphere>"), 9, "</polyline>");
-  const std::string scene = write("polyline.sdf", polyline);
+  std::string heightmap = kBallOnPlane;
+  heightmap.replace(heightmap.find("<sphere>"), 8, "<heightmap>");
+  heightmap.replace(heightmap.find("</sphere>"), 9, "</heightmap>");
+  const std::string scene = write("heightmap.sdf", heightmap);
   const Outcome unsupported = run("'" + scene + "'");
   EXPECT_EQ(unsupported.exit_code, 65);
-  EXPECT_NE(unsupported.output.find("<polyline> is not supported"), std::string::npos);
+  EXPECT_NE(unsupported.output.find("<heightmap> is not supported"), std::string::npos);
   EXPECT_NE(unsupported.output.find("model 'ball', link 'l', collision 'c'"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(out()));
   EXPECT_EQ(run("--skip-unsupported --duration 0.01 '" + scene + "'").exit_code, 0);
