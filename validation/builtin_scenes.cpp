@@ -2,6 +2,7 @@
 #include <signorini/validation/embedded_scenes.h>
 #include <signorini/validation/generic_checks.h>
 #include <signorini/validation/sdf_reader.h>
+#include <signorini/validation/trade_runs.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -46,8 +47,21 @@ SceneReport start_report(const Scene& scene) {
   report.title = scene.title;
   report.description = scene.description;
   report.source = scene.source;
+  report.text = scene.text;
   report.notices = scene.notices;
   return report;
+}
+
+/// Error against cost, if it is asked for. A stop leaves the scene as it is, without it.
+void add_trade(const Scene& scene, const RunOptions& options, const SceneCheck& check,
+               SceneReport& report) {
+  if (!options.trade || scene.error.empty()) return;
+  try {
+    if (options.stop != nullptr && options.stop->load()) throw RunInterrupted{};
+    measure_trade(scene, options, check, report);
+  } catch (const RunInterrupted&) {
+    report.notices.emplace_back("error against cost is not shown: the run was stopped");
+  }
 }
 
 }  // namespace
@@ -74,10 +88,15 @@ Scene load_builtin_scene(const BuiltinScene& builtin) {
 }
 
 SceneReport validate_builtin(const BuiltinScene& builtin, const RunOptions& options) {
-  Scene scene = load_builtin_scene(builtin);
+  return validate_builtin(builtin, load_builtin_scene(builtin), options);
+}
+
+SceneReport validate_builtin(const BuiltinScene& builtin, Scene scene, const RunOptions& options) {
   scene.duration = options.duration.value_or(scene.duration);
   SceneReport report = start_report(scene);
+  report.builtin = true;
   builtin.check(scene, options, report);
+  add_trade(scene, options, builtin.check, report);
   // What a scene is there to show comes before the checks that every scene has.
   std::stable_partition(report.checks.begin(), report.checks.end(), [](const Check& check) {
     return check.reference.starts_with("closed form");
@@ -92,6 +111,7 @@ SceneReport validate_scene(Scene scene, const RunOptions& options) {
   RunOptions kept = options;
   kept.keep_stopped = true;
   check_generic(scene, kept, report);
+  add_trade(scene, options, check_generic, report);
   return report;
 }
 

@@ -25,6 +25,9 @@ struct BuiltinScene {
 
 /// Runs a built-in scene and fills its report. @throws RunInterrupted
 [[nodiscard]] SceneReport validate_builtin(const BuiltinScene& builtin, const RunOptions& options);
+/// The same, of a scene that was read from elsewhere: what its checks know is in its bodies.
+[[nodiscard]] SceneReport validate_builtin(const BuiltinScene& builtin, Scene scene,
+                                           const RunOptions& options);
 /// Runs a scene from outside under the generic checks. A run that is stopped is kept as far as it
 /// came, with a notice.
 [[nodiscard]] SceneReport validate_scene(Scene scene, const RunOptions& options);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <signorini/validation/playback.h>
+#include <signorini/validation/trade.h>
 
 #include <optional>
 #include <string>
@@ -70,34 +71,50 @@ struct SceneReport {
   std::string title;
   std::string description;  ///< a paragraph: what happens, what is compared, where it comes from
   std::string source;       ///< the scene's file, or "built in code: SDF cannot say it"
-  std::string command;      ///< repeats this scene
+  std::string text;      ///< of the scene's file: kept beside the report, to repeat it from there
+  bool builtin = false;  ///< judged by checks of this program, not by the generic ones
+  std::string command;   ///< repeats this scene
   std::vector<std::string> settings;  ///< how each engine was run; Bullet's profile, printed whole
   std::vector<std::string> notices;   ///< what of the file was ignored, and anything odd
   std::vector<Check> checks;
   std::vector<Plot> plots;
   std::vector<Table> tables;
-  double signorini_seconds = -1.0;  ///< wall time of the run; -1: not run
+  std::optional<Trade> trade;       ///< error against cost; none: the scene names no error
+  double signorini_seconds = -1.0;  ///< wall time of the steps; -1: not run
   double bullet_seconds = -1.0;
-  std::optional<Playback> playback;  ///< none: nothing moved, or a single impact was judged
+  std::optional<Playback> playback;        ///< none: nothing moved, or a single impact was judged
+  double signorini_solver_seconds = -1.0;  ///< of that inside the solver of contacts
+  double bullet_solver_seconds = -1.0;
 
   /// kFail if any check failed, kPass if at least one passed and none failed, else kInformation.
   [[nodiscard]] Verdict verdict() const;
 };
 
+/// What of a command line decides the numbers of a report.
+struct RunArguments {
+  std::string engine = "both";
+  std::optional<double> duration;
+  std::string bullet_profile = "neutral";
+  bool skip_unsupported = false;
+  std::optional<double> ground;
+  bool trade = true;
+};
+
 struct Report {
   static constexpr int kSchemaVersion = 1;
-  std::string command;   ///< the whole command line
+  std::string command;  ///< the whole command line
+  RunArguments arguments;
   std::string version;   ///< of signorini
   std::string engines;   ///< versions: Bullet's, libsdformat's
   bool partial = false;  ///< the run was interrupted
   std::vector<SceneReport> scenes;
 };
 
-/// report.json, report.md and (if the build had node) report.html in a folder, which is created if
-/// need be. Each file is written whole or not at all: beside its place, then renamed over it. In
-/// report.json and report.html, text
-/// that is not UTF-8 is written with U+FFFD in place of the bad bytes. The fields of report.json
-/// are documented in docs/report-schema.md; NaN and infinity are the strings "NaN", "Infinity" and
+/// report.json, report.md, the scenes' files (scenes/01-NAME.sdf ...) and (if the build had node)
+/// report.html in a folder, which is created if need be. Each file is written whole or not at all:
+/// beside its place, then renamed over it. In report.json and report.html, text that is not UTF-8
+/// is written with U+FFFD in place of the bad bytes. The fields of report.json are documented in
+/// docs/report-schema.md; NaN and infinity are the strings "NaN", "Infinity" and
 /// "-Infinity". report.html carries the plots thinned to at most 900 points a line (the lowest and
 /// the highest of each stretch are kept) and 7 digits; report.json carries them whole.
 ///

@@ -4,6 +4,7 @@
 #include <signorini/validation/worst_check.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <fmt/format.h>
@@ -91,6 +92,32 @@ Json table_json(const Table& table) {
   return {{"title", table.title}, {"header", table.header}, {"rows", table.rows}};
 }
 
+Json point_json(const TradePoint& point) {
+  return {{"solver", point.solver},
+          {"engine", point.engine},
+          {"step", number(point.step)},
+          {"error", number(point.error)},
+          {"whole_seconds", seconds(point.whole_seconds)},
+          {"solver_seconds", seconds(point.solver_seconds)}};
+}
+
+Json trade_json(const Trade& trade) {
+  Json result = {{"error", trade.error},
+                 {"unit", trade.unit},
+                 {"reference", trade.reference},
+                 {"scale", number(trade.scale)},
+                 {"duration", number(trade.duration)},
+                 {"points", Json::array()},
+                 {"losses", Json::array()}};
+  for (const TradePoint& point : trade.points) result["points"].push_back(point_json(point));
+  for (const Loss& loss : losses(trade)) {
+    result["losses"].push_back({{"theirs", loss.theirs},
+                                {"ours", loss.reached ? Json(loss.ours) : Json(nullptr)},
+                                {"factor", number(loss.factor)}});
+  }
+  return result;
+}
+
 /// The index of a check of this scene, null for none.
 Json check_index(const SceneReport& scene, const Check* check) {
   return check == nullptr ? Json(nullptr) : Json(check - scene.checks.data());
@@ -103,17 +130,21 @@ Json scene_json(const SceneReport& scene, const LinesToJson& lines_json) {
                  {"title", scene.title},
                  {"description", scene.description},
                  {"source", scene.source},
+                 {"builtin", scene.builtin},
                  {"command", scene.command},
                  {"verdict", to_string(scene.verdict())},
                  {"worst_check", check_index(scene, worst)},
                  {"bullet_beside", check_index(scene, bullets)},
                  {"signorini_seconds", seconds(scene.signorini_seconds)},
                  {"bullet_seconds", seconds(scene.bullet_seconds)},
+                 {"signorini_solver_seconds", seconds(scene.signorini_solver_seconds)},
+                 {"bullet_solver_seconds", seconds(scene.bullet_solver_seconds)},
                  {"settings", scene.settings},
                  {"notices", scene.notices},
                  {"checks", Json::array()},
                  {"plots", Json::array()},
-                 {"tables", Json::array()}};
+                 {"tables", Json::array()},
+                 {"trade", scene.trade ? trade_json(*scene.trade) : Json(nullptr)}};
   for (const Check& check : scene.checks) result["checks"].push_back(check_json(check));
   for (const Plot& plot : scene.plots) result["plots"].push_back(plot_json(plot, lines_json));
   for (const Table& table : scene.tables) result["tables"].push_back(table_json(table));
@@ -132,18 +163,43 @@ Json summary_json(const Report& report) {
   return result;
 }
 
+Json maybe(const std::optional<double>& value) {
+  return value ? number(*value) : Json(nullptr);
+}
+
+Json arguments_json(const RunArguments& arguments) {
+  return {{"engine", arguments.engine},
+          {"duration", maybe(arguments.duration)},
+          {"bullet_profile", arguments.bullet_profile},
+          {"skip_unsupported", arguments.skip_unsupported},
+          {"ground", maybe(arguments.ground)},
+          {"trade", arguments.trade}};
+}
+
 std::string dump(const Report& report, const LinesToJson& lines_json) {
-  Json result = {{"schema", "signorini-report"},    {"schema_version", Report::kSchemaVersion},
-                 {"command", report.command},       {"version", report.version},
-                 {"engines", report.engines},       {"partial", report.partial},
-                 {"summary", summary_json(report)}, {"scenes", Json::array()}};
-  for (const SceneReport& scene : report.scenes) {
-    result["scenes"].push_back(scene_json(scene, lines_json));
+  Json result = {{"schema", "signorini-report"}, {"schema_version", Report::kSchemaVersion},
+                 {"command", report.command},    {"arguments", arguments_json(report.arguments)},
+                 {"version", report.version},    {"engines", report.engines},
+                 {"partial", report.partial},    {"summary", summary_json(report)},
+                 {"scenes", Json::array()}};
+  for (std::size_t i = 0; i < report.scenes.size(); ++i) {
+    result["scenes"].push_back(scene_json(report.scenes[i], lines_json));
+    result["scenes"].back()["file"] = scene_file_name(report, i);
   }
   return result.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace
+
+std::string scene_file_name(const Report& report, std::size_t index) {
+  std::string name;
+  for (const char character : report.scenes[index].name) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(character)) != 0 ||
+                       character == '-' || character == '.' || character == '_';
+    name += plain ? character : '_';
+  }
+  return fmt::format("scenes/{:02}-{}.sdf", index + 1, name);
+}
 
 std::string report_json(const Report& report) {
   return dump(report, whole_lines) + "\n";

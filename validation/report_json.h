@@ -16,4 +16,8 @@ namespace signorini::validation {
 /// \u003c, so that the text can stand inside a <script> element.
 [[nodiscard]] std::string report_page_json(const Report& report);
 
+/// Where a scene's file is kept, relative to the report's folder: "scenes/01-NAME.sdf", letters
+/// that a file name may not hold replaced by "_".
+[[nodiscard]] std::string scene_file_name(const Report& report, std::size_t index);
+
 }  // namespace signorini::validation

@@ -112,6 +112,38 @@ void write_checks(const SceneReport& scene, Out out) {
   fmt::format_to(out, "\n");
 }
 
+std::string way_text(const TradePoint& point) {
+  return fmt::format("{}, step {:g} s", point.solver, point.step);
+}
+
+void write_losses(const Report& report, Out out) {
+  fmt::format_to(out,
+                 "## Where we lose\n\nScenes where another engine is faster at equal error "
+                 "(errors below {:g} of the scene's scale count as equal).\n\n",
+                 kEqualErrors);
+  bool any = false;
+  for (const SceneReport& scene : report.scenes) {
+    const std::vector<Loss> lost = scene.trade ? losses(*scene.trade) : std::vector<Loss>{};
+    if (lost.empty()) continue;
+    if (!any) {
+      fmt::format_to(out,
+                     "| scene | error | whose | theirs | time | ours at that error | our time / "
+                     "theirs |\n|---|---|---|---|---|---|---|\n");
+    }
+    any = true;
+    const Trade& trade = *scene.trade;
+    const TradePoint& theirs = trade.points[lost.front().theirs];
+    const std::string ours = lost.front().reached
+                                 ? markdown_escaped(way_text(trade.points[lost.front().ours]))
+                                 : "not reached by any run";
+    fmt::format_to(out, "| {} | {} | {:.3g} {} | {} | {} | {} | {:.3g} |\n",
+                   markdown_escaped(scene.name), markdown_escaped(trade.error), theirs.error,
+                   markdown_escaped(trade.unit), markdown_escaped(way_text(theirs)),
+                   duration(theirs.whole_seconds), ours, lost.front().factor);
+  }
+  fmt::format_to(out, "{}\n", any ? "" : "None in this run.\n");
+}
+
 std::optional<std::pair<double, double>> finite_range(const std::vector<double>& values) {
   std::optional<std::pair<double, double>> range;
   for (const double value : values) {
@@ -208,6 +240,7 @@ std::string report_markdown(const Report& report, std::string_view no_page_becau
   const Out out = std::back_inserter(result);
   write_front(report, no_page_because, out);
   write_verdict_table(report, out);
+  write_losses(report, out);
   for (const SceneReport& scene : report.scenes) write_scene(scene, out);
   return result;
 }

@@ -78,7 +78,13 @@ std::vector<std::string> write_report(const Report& report, const std::string& f
                        report_page(report_page_template(), report_page_json(report)));
   }
 
+  for (std::size_t i = 0; i < report.scenes.size(); ++i) {
+    if (report.scenes[i].text.empty()) continue;
+    files.emplace_back(scene_file_name(report, i), report.scenes[i].text);
+  }
+
   create_folder(folder);
+  create_folder((std::filesystem::path(folder) / "scenes").string());
   std::vector<std::string> written;
   for (const auto& [name, text] : files) {
     const std::filesystem::path file = std::filesystem::path(folder) / name;

@@ -16,6 +16,7 @@ struct Scene {
   std::string title;        ///< for people
   std::string description;  ///< a paragraph
   std::string source;       ///< the file, or what stands for it
+  std::string text;         ///< of that file, as it was read
   Bodies bodies;
   State state;  ///< at t = 0
   std::vector<collision::Collider> colliders;
@@ -28,6 +29,9 @@ struct Scene {
   /// Gazebo's rule for friction and restitution.
   PairingRule rule = PairingRule::kMinimum;
   std::vector<std::string> notices;  ///< what of the file a run ignores
+  /// The name of the check whose error stands for the scene; empty: none does.
+  std::string error;
+  double error_scale = 1.0;  ///< > 0: an error of this size is a wholly wrong answer; its unit
 
   /// Steps that cover the duration: the nearest whole number to duration / step, at least 1.
   [[nodiscard]] long step_count() const;

@@ -22,9 +22,8 @@ std::string endings_text(const Track& track) {
 }
 
 void check_every_step(const Track& track, UnsolvedSteps unsolved, SceneReport& report) {
-  report.settings.push_back(fmt::format("Signorini: {} steps: {}; LCP solver {:.3g} s of {:.3g} s",
-                                        track.steps, endings_text(track), track.solver_seconds,
-                                        track.wall_seconds));
+  report.settings.push_back(
+      fmt::format("Signorini: {} steps: {}", track.steps, endings_text(track)));
   const CheckText text{.name = "steps whose contact problem was not solved",
                        .reference = "certificate",
                        .unit = "1",
@@ -67,6 +66,16 @@ Series series_of(const Track& track, const Measure& measure) {
 
 }  // namespace
 
+RunOptions options_of(const RunArguments& arguments) {
+  RunOptions options;
+  options.signorini = arguments.engine != "bullet";
+  options.bullet = arguments.engine != "signorini";
+  options.duration = arguments.duration;
+  options.profile = BulletProfile::named(arguments.bullet_profile);
+  options.trade = arguments.trade;
+  return options;
+}
+
 Track run_ours(const Scene& scene, const TimeStepSettings& settings, const RunOptions& options) {
   TimeStepSettings recorded = settings;
   recorded.lcp.recorder = options.recorder;
@@ -92,6 +101,7 @@ Runs run_engines(const Scene& scene, const RunOptions& options, SceneReport& rep
     append(describe(settings), report.settings);
     runs.signorini = run_ours(scene, settings, options);
     report.signorini_seconds = runs.signorini->wall_seconds;
+    report.signorini_solver_seconds = runs.signorini->solver_seconds;
     say_if_stopped(scene, *runs.signorini, report);
     check_every_step(*runs.signorini, unsolved, report);
   }
@@ -103,6 +113,7 @@ Runs run_engines(const Scene& scene, const RunOptions& options, SceneReport& rep
     for (const std::string& remark : runs.bullet->remarks) {
       report.settings.push_back("Bullet: " + remark);
     }
+    report.bullet_solver_seconds = runs.bullet->solver_seconds;
     if (runs.bullet->broke_down) {
       report.notices.push_back(fmt::format(
           "Bullet's run ended after {} steps: a number was no longer finite", runs.bullet->steps));

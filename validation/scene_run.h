@@ -21,10 +21,16 @@ struct RunOptions {
   std::optional<double> duration;  ///< s; overrides the scene's own
   BulletProfile profile = BulletProfile::neutral();
   const StopFlag* stop = nullptr;
-  StepWatcher watch = nullptr;             ///< empty: nobody watches
-  bool keep_stopped = false;               ///< a run that was stopped is kept, shorter, as it is
+  StepWatcher watch = nullptr;  ///< empty: nobody watches
+  bool keep_stopped = false;    ///< a run that was stopped is kept, shorter, as it is
+  bool studies = true;  ///< what a scene shows beside its stepped runs: laws, orders, convergence
+  bool trade = false;   ///< run the scene in further ways for error against cost
   lcp::SolveRecorder* recorder = nullptr;  ///< is told of every contact problem of ours
 };
+
+/// The options that the arguments of a report stand for.
+/// @throws std::invalid_argument for a profile that there is not
+[[nodiscard]] RunOptions options_of(const RunArguments& arguments);
 
 /// The run was stopped, and is not kept: the scene has no report.
 struct RunInterrupted {};

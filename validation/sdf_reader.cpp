@@ -177,6 +177,12 @@ class SceneBuilder {
     if (const auto e = world.FindElement("signorini:duration"); e != nullptr) {
       scene_.duration = numbers(*e).x();
     }
+    if (const auto e = world.FindElement("signorini:error"); e != nullptr) {
+      scene_.error = squeezed(e->GetValue()->GetAsString());
+    }
+    if (const auto e = world.FindElement("signorini:error_scale"); e != nullptr) {
+      scene_.error_scale = numbers(*e).x();
+    }
     if (const auto e = world.FindElement("signorini:pairing"); e != nullptr) {
       scene_.rule = pairing_rule(squeezed(e->GetValue()->GetAsString()), *e);
     }
@@ -421,6 +427,7 @@ Scene read(const std::string& text, const std::string& file, const std::string& 
   check_numbers(xml, format, source);
   Scene scene;
   scene.source = source;
+  scene.text = text;
   scene.name = std::filesystem::path(source).stem().string();
   UrdfExtras extras;
   const SdfExtras sdf_extras = read_sdf_extras(xml);

@@ -51,8 +51,9 @@ constexpr std::array<std::string_view, 15> kUsed = {
     "mu",   "mu2",      "mass",    "inertia",          "restitution_coefficient",
     "name", "geometry", "density", "real_time_factor", "allow_auto_disable"};
 
-constexpr std::array<std::string_view, 4> kWorldExtensions = {
-    "signorini:title", "signorini:description", "signorini:duration", "signorini:pairing"};
+constexpr std::array<std::string_view, 6> kWorldExtensions = {
+    "signorini:title",   "signorini:description", "signorini:duration",
+    "signorini:pairing", "signorini:error",       "signorini:error_scale"};
 constexpr std::array<std::string_view, 2> kLinkExtensions = {"signorini:linear_velocity",
                                                              "signorini:angular_velocity"};
 

@@ -4,6 +4,7 @@
 #include <signorini/validation/builtin_scenes.h>
 #include <signorini/validation/bullet_runner.h>
 #include <signorini/validation/input_error.h>
+#include <signorini/validation/report_repeat.h>
 #include <signorini/validation/sdf_reader.h>
 
 #ifdef SIGNORINI_HAS_IO
@@ -11,6 +12,7 @@
 #endif
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -43,13 +45,11 @@ extern "C" void request_stop(int) {
 
 struct Arguments {
   std::vector<std::string> scenes;
-  std::string engine = "both";
-  std::optional<double> duration;
+  RunArguments run;
   std::string out = "signorini-report";
-  std::string bullet_profile = "neutral";
-  bool skip_unsupported = false;
-  std::optional<double> ground;
+  bool no_trade = false;
   bool list = false;
+  std::string verify;  ///< a report's folder; empty: run scenes
 };
 
 /// A built-in scene, or one read from a file.
@@ -62,20 +62,28 @@ struct Job {
 void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("SCENE", arguments.scenes,
                  "SDFormat or URDF files, or names of built-in scenes; default: all built-in ones");
-  app.add_option("--engine", arguments.engine, "signorini, bullet or both")
+  app.add_option("--engine", arguments.run.engine, "signorini, bullet or both")
       ->check(CLI::IsMember({"signorini", "bullet", "both"}))
       ->capture_default_str();
-  app.add_option("--duration", arguments.duration, "seconds to run; default: the scene's own, or 5")
+  app.add_option("--duration", arguments.run.duration,
+                 "seconds to run; default: the scene's own, or 5")
       ->check(CLI::PositiveNumber);
   app.add_option("--out", arguments.out, "folder of the report")->capture_default_str();
-  app.add_option("--bullet-profile", arguments.bullet_profile,
+  app.add_option("--bullet-profile", arguments.run.bullet_profile,
                  "neutral (exact restitution, 50 iterations) or default (Bullet's own)")
       ->check(CLI::IsMember({"neutral", "default"}))
       ->capture_default_str();
-  app.add_flag("--skip-unsupported", arguments.skip_unsupported,
+  app.add_flag("--skip-unsupported", arguments.run.skip_unsupported,
                "leave out shapes and joints that are not supported, with a notice each");
-  app.add_option("--ground", arguments.ground,
+  app.add_option("--ground", arguments.run.ground,
                  "add a fixed half-space z <= this height (m) to scenes read from files");
+  app.add_flag("--no-trade", arguments.no_trade,
+               "leave out the further runs that show error against cost");
+  app.add_option(
+         "--verify", arguments.verify,
+         "run the scenes of a report's folder again, from the files in it, and compare every "
+         "number with its report.json")
+      ->check(CLI::ExistingDirectory);
   app.add_flag("--list", arguments.list, "list the built-in scenes and end");
 }
 
@@ -92,7 +100,7 @@ std::vector<Job> load_jobs(const Arguments& arguments) {
       jobs.push_back({std::string(builtin.name), &builtin, {}});
     }
   }
-  const ReadOptions options{arguments.skip_unsupported, arguments.ground};
+  const ReadOptions options{arguments.run.skip_unsupported, arguments.run.ground};
   for (const std::string& name : arguments.scenes) {
     const BuiltinScene* builtin =
         std::filesystem::exists(name) ? nullptr : find_builtin_scene(name);
@@ -110,12 +118,8 @@ std::vector<Job> load_jobs(const Arguments& arguments) {
 }
 
 RunOptions run_options(const Arguments& arguments, signorini::lcp::SolveRecorder* recorder) {
-  RunOptions options;
+  RunOptions options = options_of(arguments.run);
   options.recorder = recorder;
-  options.signorini = arguments.engine != "bullet";
-  options.bullet = arguments.engine != "signorini";
-  options.duration = arguments.duration;
-  options.profile = BulletProfile::named(arguments.bullet_profile);
   options.stop = &stop_requested;
   return options;
 }
@@ -123,13 +127,14 @@ RunOptions run_options(const Arguments& arguments, signorini::lcp::SolveRecorder
 /// The command that repeats one scene.
 std::string command_for(const Arguments& arguments, const std::string& scene) {
   std::string command = "signorini-validate " + scene;
-  if (arguments.engine != "both") command += " --engine " + arguments.engine;
-  if (arguments.duration) command += fmt::format(" --duration {}", *arguments.duration);
-  if (arguments.bullet_profile != "neutral") {
-    command += " --bullet-profile " + arguments.bullet_profile;
+  if (arguments.run.engine != "both") command += " --engine " + arguments.run.engine;
+  if (arguments.run.duration) command += fmt::format(" --duration {}", *arguments.run.duration);
+  if (arguments.run.bullet_profile != "neutral") {
+    command += " --bullet-profile " + arguments.run.bullet_profile;
   }
-  if (arguments.skip_unsupported) command += " --skip-unsupported";
-  if (arguments.ground) command += fmt::format(" --ground {}", *arguments.ground);
+  if (arguments.run.skip_unsupported) command += " --skip-unsupported";
+  if (!arguments.run.trade) command += " --no-trade";
+  if (arguments.run.ground) command += fmt::format(" --ground {}", *arguments.run.ground);
   return command;
 }
 
@@ -208,6 +213,7 @@ Report run_jobs(std::vector<Job> jobs, const Arguments& arguments,
   RunOptions options = run_options(arguments, recorder);
   Report report;
   report.version = SIGNORINI_VERSION;
+  report.arguments = arguments.run;
   report.engines = fmt::format("Bullet {} (double precision), libsdformat {}", bullet_version(),
                                sdformat_version());
   Progress progress(jobs.size());
@@ -236,15 +242,42 @@ Report run_jobs(std::vector<Job> jobs, const Arguments& arguments,
   return report;
 }
 
+/// Runs a report's scenes again from its folder and prints what differs.
+int verify(const std::string& folder) {
+  const bool terminal = isatty(STDOUT_FILENO) != 0;
+  RepeatedReport result;
+  try {
+    result = repeat_report(folder, &stop_requested,
+                           [&](std::size_t index, std::size_t count, const std::string& name) {
+                             if (terminal)
+                               fmt::print("\r\x1b[K[{}/{}] {} ...", index + 1, count, name);
+                             std::fflush(stdout);
+                           });
+  } catch (const RunInterrupted&) {
+    fmt::print("{}stopped\n", terminal ? "\r\x1b[K" : "");
+    return kStopped;
+  }
+  if (terminal) fmt::print("\r\x1b[K");
+  constexpr std::size_t kMostShown = 20;
+  for (std::size_t i = 0; i < std::min(kMostShown, result.differences.size()); ++i) {
+    fmt::print("differs: {}\n", result.differences[i]);
+  }
+  fmt::print("{} scenes, {} numbers compared, {} differences\n", result.scenes, result.numbers,
+             result.differences.size());
+  return result.differences.empty() ? kGood : kCheckFailed;
+}
+
 int run(const Arguments& arguments, const std::string& command) {
   if (arguments.list) {
     list_builtin_scenes();
     return kGood;
   }
-  std::vector<Job> jobs = load_jobs(arguments);
+  std::vector<Job> jobs;
+  if (arguments.verify.empty()) jobs = load_jobs(arguments);
   // From here a stop leaves a report; before, it just ends the program.
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
+  if (!arguments.verify.empty()) return verify(arguments.verify);
 #ifdef SIGNORINI_HAS_IO
   const auto recorder = signorini::lcp::dump_recorder_from_environment();
   Report report = run_jobs(std::move(jobs), arguments, recorder.get());
@@ -269,7 +302,8 @@ int main(int argc, char** argv) {
   CLI::App app{
       "Runs scenes in Signorini and in Bullet (double precision), compares both with closed forms, "
       "and writes report.html, report.md and report.json.\n"
-      "Exit: 0 every check passed, 1 a check failed, 64 bad usage, 65 bad or unsupported scene, "
+      "Exit: 0 every check passed (--verify: every number is the same), 1 not, 64 bad usage, 65 "
+      "bad or unsupported scene, "
       "130 "
       "stopped (the report written is partial).\n"
       "SIGNORINI_DUMP=DIR[:OPTION,...] in the environment writes the contact problems for a replay "
@@ -282,6 +316,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kGood : kUsage;
   }
+  arguments.run.trade = !arguments.no_trade;
   try {
     return run(arguments, joined(argc, argv));
   } catch (const InputError& error) {

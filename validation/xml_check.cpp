@@ -46,6 +46,7 @@ const std::map<std::string_view, NumberRule>& sdf_rules() {
       {"mu2", {1, Bound::kNotNegative}},
       {"restitution_coefficient", {1, Bound::kUnitInterval}},
       {"signorini:duration", {1, Bound::kPositive}},
+      {"signorini:error_scale", {1, Bound::kPositive}},
       {"signorini:linear_velocity", {3}},
       {"signorini:angular_velocity", {3}},
   };

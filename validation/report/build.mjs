@@ -38,6 +38,7 @@ async function makePage() {
   const style = await bundled('src/style.css', browser);
   let page = readFileSync('src/page.html', 'utf8');
   page = filled(page, 'UPLOT_LICENSE', readFileSync('node_modules/uplot/LICENSE', 'utf8').trim());
+  page = filled(page, 'THREE_LICENSE', readFileSync('node_modules/three/LICENSE', 'utf8').trim());
   page = filled(page, '/*STYLE*/', style.trim());
   page = filled(page, '/*SCRIPT*/', script.trim());
   filled(page, kPlaceholder, '');

@@ -220,8 +220,8 @@ void check_ball_drop(const Scene& scene, const RunOptions& options, SceneReport&
       check_rest(drop, scene, track, report);
     }
   });
-  if (options.signorini && drop.e > 0.0) check_events(scene, drop, report);
-  if (options.bullet && drop.e > 0.0 && options.profile.name == "neutral") {
+  if (options.signorini && options.studies && drop.e > 0.0) check_events(scene, drop, report);
+  if (options.bullet && options.studies && drop.e > 0.0 && options.profile.name == "neutral") {
     const std::vector<double> apexes =
         apexes_of(run_theirs(scene, BulletProfile::bullet_default(), options), drop.height);
     if (!apexes.empty()) {
@@ -234,7 +234,9 @@ void check_ball_drop(const Scene& scene, const RunOptions& options, SceneReport&
   }
   add_energy_check(scene, runs, report);
   add_overlap_check(scene, runs, report);
-  if (options.signorini && drop.e > 0.0) report.tables.push_back(convergence(scene, drop, options));
+  if (options.signorini && options.studies && drop.e > 0.0) {
+    report.tables.push_back(convergence(scene, drop, options));
+  }
   const double ground = scene.state[kBall].x.z() - drop.height;
   report.plots.push_back(plot_over_time(
       "Height of the ball's lowest point", "height [m]", runs,

@@ -192,8 +192,8 @@ void show_bullet_landing(const Scene& landed, const RunOptions& options, SceneRe
 
 /// w = 0 before, during and after a flat landing; v+ = e s.
 void check_box_landing(const Scene& scene, const RunOptions& options, SceneReport& report) {
-  if (options.signorini) check_all_orders(at_touch_down(scene), report);
-  if (options.bullet) show_bullet_landing(at_touch_down(scene), options, report);
+  if (options.signorini && options.studies) check_all_orders(at_touch_down(scene), report);
+  if (options.bullet && options.studies) show_bullet_landing(at_touch_down(scene), options, report);
   const Runs runs = run_engines(scene, options, report);
   runs.for_each([&](const Track& track) {
     const CheckText text{.name = "stepped: greatest |w| of the whole run",

@@ -2,11 +2,14 @@
 
 import { h } from './dom';
 import type { Child } from './dom';
-import { formatNumber, withUnit } from './format';
+import { formatDuration, formatNumber, withUnit } from './format';
 import { ratioTrack, trackAxis, trackLegend, verdictChip, verdictIcon } from './marks';
 import type { Mark } from './marks';
 import { engineName } from './plot_data';
 import type { Check, Report, Verdict } from './report';
+import { scatter } from './scatter';
+import { lossLines, scatterGroups } from './trade';
+import type { LossLine } from './trade';
 import { kVerdicts, selected } from './verdict';
 import type { SceneSummary, Selection, SortKey } from './verdict';
 
@@ -71,7 +74,7 @@ function row(summary: SceneSummary): HTMLElement {
   const line = h('tr', { class: scene.verdict, 'data-scene': scene.name },
     h('td', {}, verdictChip(scene.verdict)),
     h('th', { scope: 'row' }, h('a', { href: summary.route }, scene.title),
-      h('small', { class: 'name' }, scene.name)),
+      h('small', { class: 'name', title: 'Repeats this scene' }, scene.command)),
     compared, errorCell(worst), bulletCell(summary.bullet),
     h('td', { class: 'track-cell' }, marks.length > 0 ? ratioTrack(marks) : null));
   // The whole line is a target; the link in it is what keyboards and screen readers use.
@@ -80,6 +83,47 @@ function row(summary: SceneSummary): HTMLElement {
     if (!isOnLink && getSelection()?.isCollapsed !== false) location.hash = summary.route;
   });
   return line;
+}
+
+function lossRow({ scene, trade, theirs, ours, factor }: LossLine, route: string): HTMLElement {
+  const text = (value: number) => withUnit(formatNumber(value), trade.unit);
+  const way = (step: number, solver: string, seconds: number | null) =>
+    [solver, h('small', {}, `step ${formatNumber(step)} s, ${formatDuration(seconds)}`)];
+  return h('tr', {},
+    h('th', { scope: 'row' }, h('a', { href: route }, scene.title), h('small', {}, trade.error)),
+    h('td', { class: 'number' }, text(theirs.error)),
+    h('td', {}, ...way(theirs.step, theirs.solver, theirs.whole_seconds)),
+    h('td', {}, ...(ours === null ? ['not reached by any run']
+      : [...way(ours.step, ours.solver, ours.whole_seconds), h('small', {}, `error ${text(ours.error)}`)])),
+    h('td', { class: 'number' }, Number.isFinite(factor) ? `${formatNumber(factor, 2)} ×` : '–'));
+}
+
+function routesOf(summaries: readonly SceneSummary[]): Map<object, string> {
+  return new Map<object, string>(summaries.map(({ scene, route }) => [scene, route]));
+}
+
+/** The picture of error against cost; null if no scene has any. */
+function tradeSection(summaries: readonly SceneSummary[]): HTMLElement | null {
+  const groups = scatterGroups(summaries.map(({ scene }) => scene));
+  if (groups.length === 0) return null;
+  return h('section', {}, h('h2', {}, 'Error against cost'), scatter(groups, routesOf(summaries)));
+}
+
+/** What the picture says against us. */
+function lossSection(summaries: readonly SceneSummary[]): HTMLElement | null {
+  const measured = summaries.filter(({ scene }) => scene.trade !== null).length;
+  if (measured === 0) return null;
+  const routes = routesOf(summaries);
+  const lost = lossLines(summaries.map(({ scene }) => scene));
+  return h('section', {},
+    h('h2', {}, `Where we lose: ${lost.length} of ${measured} scenes`),
+    h('p', { class: 'hint' }, 'Bullet is faster at equal error. For each scene the heaviest case: its run, and the cheapest '
+      + 'of ours that errs no more. Errors below 10⁻⁹ of the scale count as equal; a run that is wrong by the scale or more is no answer.'),
+    lost.length === 0 ? h('p', {}, 'Nowhere in this report.')
+      : h('div', { class: 'scroll' }, h('table', { class: 'losses' },
+        h('thead', {}, h('tr', {}, ...['Scene', 'Error', 'Theirs', 'Ours, at most that error', 'Our time / theirs'].map(
+          (title, i) => h('th', { scope: 'col', class: i === 1 || i === 4 ? 'number' : '' }, title)))),
+        h('tbody', {}, ...lost.map((line) => lossRow(line, routes.get(line.scene) ?? '#/'))))));
 }
 
 const kColumns: { key: SortKey | null; title: string; classes: string }[] = [
@@ -116,11 +160,13 @@ export class Front {
   ) {
     this.filter.value = selection.text;
     this.filter.addEventListener('input', () => this.select({ text: this.filter.value }));
-    this.element = h('div', { class: 'front' }, this.header(),
+    this.element = h('div', { class: 'front' }, this.header(), tradeSection(summaries),
+      h('h2', {}, 'Scenes'),
       h('div', { class: 'tools' }, this.filter, this.count, trackLegend()),
       h('div', { class: 'scroll' }, h('table', { class: 'scenes' },
         h('caption', { class: 'unseen' }, 'All scenes with verdict and worst check'),
         h('thead', {}, this.head), this.body)),
+      lossSection(summaries),
       this.footer());
     this.update();
   }

@@ -6,6 +6,7 @@
 import { h } from './dom';
 import { Front } from './front';
 import { onKeys } from './keyboard';
+import type { Player } from './player';
 import type { PlotView } from './plot';
 import { decodeReport } from './report';
 import type { Report } from './report';
@@ -21,15 +22,25 @@ class App {
   private filterOnFront = false;
   private current: SceneSummary | null = null;
   private plots: PlotView[] = [];
+  private player: Player | null = null;
 
   constructor(private readonly report: Report, private readonly root: HTMLElement) {
     this.summaries = summarised(report.scenes);
     addEventListener('hashchange', () => this.show());
-    onKeys({
+    onKeys(() => this.player !== null, {
       '/': () => this.filter(),
       ArrowLeft: () => this.step(-1),
       ArrowRight: () => this.step(+1),
       Escape: () => { location.hash = '#/'; },
+      ' ': () => this.player?.toggle(),
+      ',': () => this.player?.stepFrame(-1),
+      '.': () => this.player?.stepFrame(+1),
+      '[': () => this.player?.changeSpeed(-1),
+      ']': () => this.player?.changeSpeed(+1),
+      Home: () => this.player?.seek(0),
+      c: () => this.player?.flip('points'),
+      f: () => this.player?.flip('forces'),
+      v: () => this.player?.resetView(),
     });
     this.show();
   }
@@ -38,6 +49,8 @@ class App {
     if (this.front !== null) this.frontScroll = scrollY;
     for (const plot of this.plots) plot.detach();
     this.plots = [];
+    this.player?.detach();
+    this.player = null;
     this.front = null;
     this.current = this.summaries.find((one) => one.route === location.hash) ?? null;
     if (this.current !== null) this.showScene(this.current);
@@ -61,16 +74,18 @@ class App {
   }
 
   private showScene(summary: SceneSummary): void {
-    const view = sceneView(summary.scene);
+    const view = sceneView(summary.scene, true);
     this.root.replaceChildren(this.navigation(summary), view.element);
     this.draw(view.plots);
+    this.player = view.player;
+    this.player?.attach();
     document.title = `${summary.scene.title} – Signorini validation report`;
     scrollTo(0, 0);
     view.element.querySelector('h1')?.focus({ preventScroll: true });
   }
 
   private showAll(): void {
-    const views = this.summaries.map(({ scene }) => sceneView(scene));
+    const views = this.summaries.map(({ scene }) => sceneView(scene, false));
     this.root.replaceChildren(h('nav', { class: 'bar screen-only' }, h('a', { href: '#/' }, '← Overview')),
       this.makeFront().element, ...views.map((view) => view.element));
     this.draw(views.flatMap((view) => view.plots));

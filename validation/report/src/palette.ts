@@ -54,3 +54,17 @@ export function lineStyle(engine: string, rank: number, dark: boolean): LineStyl
     dash: dashes[rank % dashes.length] ?? [],
   };
 }
+
+/** Contact forces in 3D: Okabe and Ito's green, lighter on the dark page. */
+export const kForceColour = { light: '#007a5a', dark: '#2cc79a' } as const;
+
+/** The 3D view of an engine's run. */
+export function stageColours(engine: string, dark: boolean): { moving: string; fixed: string; grid: string; point: string } {
+  const colours = kFamilies[dark ? 'dark' : 'light'][family(engine)];
+  return {
+    moving: engine === 'bullet' ? (dark ? '#F08C3A' : '#EE8A2C') : (dark ? '#56B4E9' : '#3C9BDC'),
+    fixed: dark ? '#6d747b' : '#a9aca6',
+    grid: dark ? '#4a5158' : '#bdbfb9',
+    point: dark ? '#ffffff' : colours[3] ?? '#000000',
+  };
+}

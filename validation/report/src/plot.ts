@@ -1,6 +1,7 @@
 // One plot: uPlot with our styles. Plots over the same quantity share their cursor.
 
 import uPlot from 'uplot';
+import type { Clock } from './clock';
 import { h } from './dom';
 import { formatDecade, formatNumber, formatTicks } from './format';
 import { isDark, lineStyle } from './palette';
@@ -156,7 +157,35 @@ export interface PlotView {
   detach(): void;
 }
 
-export function plotView(plot: Plot): PlotView {
+/** The line at the clock's time. */
+class Playhead {
+  private readonly line = h('div', { class: 'playhead' });
+
+  constructor(private readonly chart: uPlot, private readonly clock: Clock) {
+    chart.over.append(this.line);
+    clock.listen(this, () => this.show());
+    // Moving over the plot moves the time; pressing the button (to zoom) leaves it.
+    chart.over.addEventListener('mousemove', (event) => {
+      if (event.buttons === 0) clock.move(chart.posToVal(event.offsetX, 'x'), this);
+      this.show();
+    });
+    this.show();
+  }
+
+  show(): void {
+    const at = this.chart.valToPos(this.clock.time, 'x');
+    const isInside = at >= 0 && at <= this.chart.over.clientWidth;
+    this.line.style.display = isInside ? '' : 'none';
+    this.line.style.transform = `translateX(${at}px)`;
+  }
+
+  remove(): void {
+    this.clock.forget(this);
+  }
+}
+
+/** @param clock what the plot's x is a time of, if it is one */
+export function plotView(plot: Plot, clock: Clock | null = null): PlotView {
   const place = h('div', { class: 'canvas' });
   place.setAttribute('role', 'img');
   place.setAttribute('aria-label', describe(plot));
@@ -175,6 +204,7 @@ export function plotView(plot: Plot): PlotView {
   }
 
   let chart: uPlot | null = null;
+  let playhead: Playhead | null = null;
   const yLimits = limits(plot, data.columns);
   const print = matchMedia('print');
   const dark = matchMedia('(prefers-color-scheme: dark)');
@@ -205,6 +235,7 @@ export function plotView(plot: Plot): PlotView {
         axes: axes(plot),
         series: [{ label: plot.x_label, value: xValue }, ...lines.map((line) => seriesOptions(line, all))],
         legend: { markers: { width: 0 } },
+        hooks: { setScale: [() => playhead?.show()], setSize: [() => playhead?.show()] },
         cursor: {
           sync: { key: syncKey, scales: ['x', null] },
           points: { size: 7 },
@@ -213,6 +244,7 @@ export function plotView(plot: Plot): PlotView {
         },
       }, [data.x, ...data.columns] as uPlot.AlignedData, place);
       fillLegend(place, lines);
+      if (clock !== null) playhead = new Playhead(chart, clock);
       resized.observe(place);
       print.addEventListener('change', recolour);
       dark.addEventListener('change', recolour);
@@ -221,6 +253,8 @@ export function plotView(plot: Plot): PlotView {
       resized.disconnect();
       print.removeEventListener('change', recolour);
       dark.removeEventListener('change', recolour);
+      playhead?.remove();
+      playhead = null;
       chart?.destroy();
       chart = null;
     },

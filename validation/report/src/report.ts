@@ -1,5 +1,7 @@
 // report.json as the page reads it. Fields: docs/report-schema.md.
 
+import type { Playback } from './playback';
+
 export type Verdict = 'pass' | 'fail' | 'information';
 
 export interface Check {
@@ -39,6 +41,27 @@ export interface Table {
   rows: string[][];
 }
 
+export interface TradePoint {
+  solver: string;
+  engine: string;
+  step: number;
+  error: number;
+  whole_seconds: number | null;
+  solver_seconds: number | null;
+}
+
+/** Error against cost of one scene. */
+export interface Trade {
+  error: string;
+  unit: string;
+  reference: string;
+  scale: number;
+  duration: number;
+  points: TradePoint[];
+  /** Where another engine is faster at equal error: indices into points, the largest factor first. */
+  losses: { theirs: number; ours: number | null; factor: number }[];
+}
+
 export interface Scene {
   name: string;
   title: string;
@@ -56,6 +79,8 @@ export interface Scene {
   checks: Check[];
   plots: Plot[];
   tables: Table[];
+  playback: Playback | null;
+  trade: Trade | null;
 }
 
 export interface Report {
@@ -98,6 +123,14 @@ function decodePlot(plot: Plot): Plot {
   return { ...plot, series };
 }
 
+function decodeTrade(trade: Trade): Trade {
+  return {
+    ...trade,
+    points: trade.points.map((point) => ({ ...point, error: decodeNumber(point.error) })),
+    losses: trade.losses.map((loss) => ({ ...loss, factor: decodeNumber(loss.factor) })),
+  };
+}
+
 /** @throws Error if the text is no report of this schema's version. */
 export function decodeReport(text: string): Report {
   const report = JSON.parse(text) as Report | null;
@@ -111,6 +144,8 @@ export function decodeReport(text: string): Report {
     ...scene,
     checks: scene.checks.map(decodeCheck),
     plots: scene.plots.map(decodePlot),
+    playback: scene.playback ?? null,
+    trade: scene.trade ? decodeTrade(scene.trade) : null,
   }));
   return { ...report, scenes };
 }

@@ -1,9 +1,11 @@
 // The page of one scene.
 
+import { Clock } from './clock';
 import { h } from './dom';
 import { errorText } from './front';
 import { formatDuration, formatNumber, withUnit } from './format';
 import { ratioTrack, trackAxis, trackLegend, verdictChip } from './marks';
+import { Player, playbackEnd, stillFigure } from './player';
 import { plotView } from './plot';
 import type { PlotView } from './plot';
 import { engineName } from './plot_data';
@@ -102,23 +104,39 @@ function runSection(scene: Scene): HTMLElement {
       h('dt', {}, 'To repeat it'), h('dd', {}, h('pre', { class: 'command', tabindex: '0' }, scene.command))));
 }
 
-/** A scene on the page with the plots that must be drawn and, in the end, freed. */
+/** Plots over this play along with the 3D view. */
+const kTimeLabel = 'time [s]';
+
+function playbackSection(view: HTMLElement): HTMLElement {
+  return h('section', {}, h('h2', {}, 'Playback'), view,
+    h('p', { class: 'hint screen-only' }, h('kbd', {}, 'Space'), ' plays, ', h('kbd', {}, ','), ' ', h('kbd', {}, '.'),
+      ' step, ', h('kbd', {}, '['), ' ', h('kbd', {}, ']'), ' change the speed, ', h('kbd', {}, 'c'), ' contacts, ',
+      h('kbd', {}, 'f'), ' forces, ', h('kbd', {}, 'v'), ' resets the view. Drag turns both views, the wheel zooms '
+      + 'after a click. Moving over a plot moves the time.'));
+}
+
+/** A scene on the page with what must be drawn and, in the end, freed. */
 export interface SceneView {
   element: HTMLElement;
   plots: PlotView[];
+  player: Player | null;
 }
 
-export function sceneView(scene: Scene): SceneView {
-  const plots = scene.plots.map(plotView);
+/** @param live a player and plots that follow it; else a still */
+export function sceneView(scene: Scene, live: boolean): SceneView {
+  const clock = scene.playback !== null && live ? new Clock(playbackEnd(scene.playback)) : null;
+  const player = scene.playback !== null && clock !== null ? new Player(scene.playback, clock) : null;
+  const plots = scene.plots.map((plot) => plotView(plot, plot.x_label === kTimeLabel ? clock : null));
+  const view = player?.element ?? (scene.playback === null ? null : stillFigure(scene.playback));
   const element = h('article', { class: 'scene' },
     h('header', {}, h('p', { class: 'kicker' }, scene.name),
       h('h1', { tabindex: '-1' }, scene.title, ' ', verdictChip(scene.verdict)),
       h('p', { class: 'description' }, scene.description)),
-    noticesSection(scene), checksSection(scene),
+    noticesSection(scene), view === null ? null : playbackSection(view), checksSection(scene),
     plots.length > 0 ? h('section', {}, h('h2', {}, 'Plots'),
       h('p', { class: 'hint screen-only' }, 'Drag to zoom, double-click to see all, click a name to hide its line.'),
       h('div', { class: 'plots' }, ...plots.map((plot) => plot.element))) : null,
     scene.tables.length > 0 ? h('h2', {}, 'Tables') : null, ...scene.tables.map(tableSection),
     runSection(scene));
-  return { element, plots };
+  return { element, plots, player };
 }

@@ -17,7 +17,7 @@ function scene(name: string, verdict: Verdict, checks: Check[] = []): Scene {
     name, title: `Title of ${name}`, description: '', source: '', command: '', verdict,
     worst_check: checks.length > 0 ? 0 : null, bullet_beside: checks.length > 1 ? 1 : null,
     signorini_seconds: null, bullet_seconds: null, settings: [], notices: [], checks, plots: [],
-    tables: [],
+    tables: [], playback: null, trade: null,
   };
 }
 
