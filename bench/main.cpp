@@ -9,6 +9,7 @@
 #include "bench/peers_command.h"
 #include "bench/scaling_study.h"
 #include "bench/sequence_command.h"
+#include "bench/tradeoff_command.h"
 
 #ifdef SIGNORINI_HAS_COLLISION
 #include "bench/collision_command.h"
@@ -220,6 +221,7 @@ int run(int argc, char** argv) {
   const PeersCommand peers(app);
   const BulletSetsCommand bullet_sets(app);
   const SequenceCommand sequence(app);
+  const TradeoffCommand tradeoff(app);
   const FuzzCommand fuzz(app);
 #ifdef SIGNORINI_HAS_BULLET_DROP_IN
   const DropInCommand drop_in(app);
@@ -236,6 +238,10 @@ int run(int argc, char** argv) {
   if (peers.is_asked() || bullet_sets.is_asked()) {
     pin_libraries_to_one_thread(argv);
     return peers.is_asked() ? peers.run() : bullet_sets.run();
+  }
+  if (tradeoff.is_asked()) {
+    pin_libraries_to_one_thread(argv);
+    return tradeoff.run();
   }
   if (scaling_command->parsed()) {
     pin_libraries_to_one_thread(argv);

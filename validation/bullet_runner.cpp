@@ -46,7 +46,7 @@ Track run_bullet(const Scene& scene, const BulletProfile& profile, const StopFla
     recorder.record(time, std::move(sample), overlap.deepest, overlap.contacts);
   };
   record(0.0, world.sample());
-  recorder.record_frame({});
+  recorder.record_frame();
   for (long k = 1; k <= steps; ++k) {
     if (stop != nullptr && stop->load()) {
       track.interrupted = true;
@@ -63,7 +63,8 @@ Track run_bullet(const Scene& scene, const BulletProfile& profile, const StopFla
       break;
     }
     if (recorder.wants(k)) record(static_cast<double>(k) * scene.step, std::move(sample));
-    if (recorder.wants_frame(k)) recorder.record_frame(world.contacts(scene.step));
+    recorder.add_contacts(world.contacts(scene.step));
+    if (recorder.wants_frame(k)) recorder.record_frame();
   }
   return track;
 }

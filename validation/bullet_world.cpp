@@ -225,9 +225,14 @@ std::vector<ContactSample> BulletWorld::contacts(double step) const {
       const btManifoldPoint& point = manifold.getContactPoint(p);
       // Points that the solver left out keep the impulse of an earlier step.
       if (point.getDistance() > manifold.getContactProcessingThreshold()) continue;
-      const btVector3 impulse = point.m_appliedImpulse * point.m_normalWorldOnB +
-                                point.m_appliedImpulseLateral1 * point.m_lateralFrictionDir1 +
-                                point.m_appliedImpulseLateral2 * point.m_lateralFrictionDir2;
+      btVector3 impulse = point.m_appliedImpulse * point.m_normalWorldOnB;
+      // The directions are not set before the first friction impulse.
+      if (point.m_appliedImpulseLateral1 != 0.0) {
+        impulse += point.m_appliedImpulseLateral1 * point.m_lateralFrictionDir1;
+      }
+      if (point.m_appliedImpulseLateral2 != 0.0) {
+        impulse += point.m_appliedImpulseLateral2 * point.m_lateralFrictionDir2;
+      }
       samples.push_back({manifold.getBody0()->getUserIndex(), manifold.getBody1()->getUserIndex(),
                          ours(0.5 * (point.getPositionWorldOnA() + point.getPositionWorldOnB())),
                          ours(impulse / step)});

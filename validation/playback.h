@@ -40,20 +40,20 @@ struct Playback {
     Placement local;   ///< shape frame in the body frame
   };
 
-  /// A contact as the engine left it after a step.
+  /// A contact as the engine left it after the steps since the frame before.
   struct DrawnContact {
     int body_a = 0;  ///< into bodies
     int body_b = 0;
     std::array<double, 3> point = {0.0, 0.0,
-                                   0.0};  ///< between the two bodies, at the step's start, m
+                                   0.0};  ///< between the two bodies, at the last step's start, m
     std::array<double, 3> force = {0.0, 0.0,
-                                   0.0};  ///< on A, mean over the step, friction included, N
+                                   0.0};  ///< on A, mean over the steps, friction included, N
   };
 
   struct Frame {
     double time = 0.0;                   ///< s
     std::vector<Placement> poses;        ///< of the bodies that are not fixed, in their order
-    std::vector<DrawnContact> contacts;  ///< of the step that ended here; none at the start
+    std::vector<DrawnContact> contacts;  ///< of the steps since the frame before
     std::size_t all_contacts = 0;        ///< how many there are before thinning
   };
 

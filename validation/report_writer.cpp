@@ -84,10 +84,10 @@ std::vector<std::string> write_report(const Report& report, const std::string& f
   }
 
   create_folder(folder);
-  create_folder((std::filesystem::path(folder) / "scenes").string());
   std::vector<std::string> written;
   for (const auto& [name, text] : files) {
     const std::filesystem::path file = std::filesystem::path(folder) / name;
+    create_folder(file.parent_path());
     write_whole_file(file, text);
     written.push_back(file.string());
   }

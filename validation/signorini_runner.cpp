@@ -82,7 +82,7 @@ Track run_signorini(const Scene& scene, const TimeStepSettings& settings, const 
     recorder.record(time, sample_of(scene.bodies, state), overlap.deepest, overlap.contacts);
   };
   record(0.0);
-  recorder.record_frame({});
+  recorder.record_frame();
   for (long k = 1; k <= steps; ++k) {
     if (stop != nullptr && stop->load()) {
       track.interrupted = true;
@@ -100,7 +100,8 @@ Track run_signorini(const Scene& scene, const TimeStepSettings& settings, const 
       break;
     }
     if (recorder.wants(k)) record(time);
-    if (recorder.wants_frame(k)) recorder.record_frame(contacts_of(report, settings.step));
+    recorder.add_contacts(contacts_of(report, settings.step));
+    if (recorder.wants_frame(k)) recorder.record_frame();
   }
   return track;
 }

@@ -54,7 +54,27 @@ void TrackRecorder::record(double time, std::vector<BodySample> sample, double o
   track_.bodies.push_back(std::move(sample));
 }
 
-void TrackRecorder::record_frame(std::vector<ContactSample> contacts) {
+void TrackRecorder::add_contacts(const std::vector<ContactSample>& contacts) {
+  ++steps_since_frame_;
+  std::map<std::pair<int, int>, int> count;  // of each pair of bodies, in this step
+  for (const ContactSample& contact : contacts) {
+    const int k = count[{contact.body_a, contact.body_b}]++;
+    const auto [sum, is_new] = sums_.try_emplace({contact.body_a, contact.body_b, k}, contact);
+    if (is_new) continue;
+    sum->second.point = contact.point;
+    sum->second.force += contact.force;
+  }
+}
+
+void TrackRecorder::record_frame() {
+  std::vector<ContactSample> contacts;
+  contacts.reserve(sums_.size());
+  for (auto& [key, contact] : sums_) {
+    contact.force /= static_cast<double>(steps_since_frame_);
+    contacts.push_back(contact);
+  }
+  sums_.clear();
+  steps_since_frame_ = 0;
   track_.frames.push_back(track_.size() - 1);
   track_.frame_contacts.push_back(std::move(contacts));
 }

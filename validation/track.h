@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace signorini::validation {
@@ -77,8 +78,12 @@ class TrackRecorder {
   [[nodiscard]] bool wants_frame(long step) const {
     return step % frame_stride_ == 0 || step == steps_;
   }
-  /// Keeps the sample recorded last for playback.
-  void record_frame(std::vector<ContactSample> contacts);
+  /// After each step: what acts between two frames is shown at the second one, so that an impact
+  /// between them is seen. The k-th contact of two bodies counts as the same in every step.
+  void add_contacts(const std::vector<ContactSample>& contacts);
+  /// Keeps the sample recorded last for playback, with the contacts since the frame before: each at
+  /// its last point, the mean of its force over these steps.
+  void record_frame();
 
  private:
   const Bodies& bodies_;
@@ -87,6 +92,8 @@ class TrackRecorder {
   long stride_;
   long frame_stride_;
   Track& track_;
+  long steps_since_frame_ = 0;
+  std::map<std::tuple<int, int, int>, ContactSample> sums_;  ///< A, B, k
 };
 
 /// The stride that keeps a track within about 2 million body samples.

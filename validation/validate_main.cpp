@@ -287,6 +287,7 @@ int run(const Arguments& arguments, const std::string& command) {
 #endif
   report.command = command;
   for (const std::string& file : write_report(report, arguments.out)) {
+    if (std::filesystem::path(file).parent_path() != std::filesystem::path(arguments.out)) continue;
     fmt::print("wrote {}\n", file);
   }
   if (report.partial) return kStopped;

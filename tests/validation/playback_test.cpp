@@ -85,6 +85,26 @@ TEST(Playback, PosesComeBackToASixteenthBit) {
   }
 }
 
+TEST(Playback, ImpactsBetweenFramesAreSeenInBothEngines) {
+  Scene scene = builtin("ball-drop-e0.5", 1.0);
+  scene.step /= 8.0;
+  ASSERT_GT(frame_stride(scene.step_count(), scene.bodies.size()), 1);
+  const Runs runs = both(scene);
+  for (const Playback::PlaybackTrack& track : make_playback(scene, runs).tracks) {
+    double impulse = 0.0;  // on the ball
+    for (std::size_t f = 1; f < track.frames.size(); ++f) {
+      const double elapsed = track.frames[f].time - track.frames[f - 1].time;
+      for (const Playback::DrawnContact& contact : track.frames[f].contacts) {
+        impulse += (contact.body_a == 0 ? 1.0 : -1.0) * contact.force[2] * elapsed;
+      }
+    }
+    const Track& run = track.engine == "bullet" ? *runs.bullet : *runs.signorini;
+    const double change = run.last(0).velocity.linear.z() - run.bodies[0][0].velocity.linear.z();
+    const double weight = scene.bodies[0].mass * scene.gravity.norm() * run.time.back();
+    EXPECT_NEAR(impulse, scene.bodies[0].mass * change + weight, 1e-6) << track.engine;
+  }
+}
+
 TEST(Playback, ForcesAreThoseThatChangeTheMomentumInBothEngines) {
   const Scene scene = builtin("stack-of-5", 0.5);
   ASSERT_EQ(frame_stride(scene.step_count(), scene.bodies.size()), 1);

@@ -293,6 +293,62 @@ TEST(ReportJson, EngineThatWasNotRunHasNullSeconds) {
   EXPECT_EQ(json["bullet_seconds"], 0.25);
 }
 
+Trade two_engines(double ours, double theirs) {
+  return {.error = "apex",
+          .unit = "m",
+          .reference = "closed form",
+          .scale = 1.0,
+          .duration = 5.0,
+          .points = {{"ours, fine", "signorini", 0.001, ours, 8.0, 2.0},
+                     {"ours, coarse", "signorini", 0.004, 0.5, 2.0, 1.0},
+                     {"theirs", "bullet", 0.004, theirs, 1.0, -1.0}}};
+}
+
+TEST(Losses, AreWhereTheyAreFasterAtEqualError) {
+  const std::vector<Loss> lost = losses(two_engines(1e-3, 2e-3));
+  ASSERT_EQ(lost.size(), 1u);
+  EXPECT_EQ(lost[0].theirs, 2u);
+  EXPECT_TRUE(lost[0].reached);
+  EXPECT_EQ(lost[0].ours, 0u);
+  EXPECT_EQ(lost[0].factor, 8.0);
+  // At their error our coarse run is good enough, and it is cheaper than our fine one.
+  EXPECT_EQ(losses(two_engines(1e-3, 0.6))[0].ours, 1u);
+}
+
+TEST(Losses, OfAnErrorThatNoneOfOursReachesAreInfinite) {
+  const std::vector<Loss> lost = losses(two_engines(1e-3, 1e-4));
+  ASSERT_EQ(lost.size(), 1u);
+  EXPECT_FALSE(lost[0].reached);
+  EXPECT_EQ(lost[0].factor, kInfinity);
+}
+
+TEST(Losses, ErrorsThatNobodySeesAreEqual) {
+  const std::vector<Loss> lost = losses(two_engines(1e-10, 0.0));
+  ASSERT_EQ(lost.size(), 1u);
+  EXPECT_TRUE(lost[0].reached);
+  EXPECT_EQ(lost[0].factor, 8.0);
+}
+
+TEST(Losses, WrongAnswersAndNoAnswersWinNothing) {
+  EXPECT_TRUE(losses(two_engines(1e-3, 1.0)).empty());
+  EXPECT_TRUE(losses(two_engines(1e-3, kNaN)).empty());
+  EXPECT_TRUE(losses(Trade{}).empty());
+  Trade faster = two_engines(1e-3, 2e-3);
+  faster.points[0].whole_seconds = 0.5;
+  EXPECT_TRUE(losses(faster).empty());
+}
+
+TEST(ReportJson, TradeHoldsItsPointsAndLosses) {
+  SceneReport scene;
+  scene.trade = two_engines(kNaN, 2e-3);
+  const Json json = Json::parse(report_json(one_scene(scene)))["scenes"][0]["trade"];
+  EXPECT_EQ(json["points"][0]["error"], "NaN");
+  EXPECT_TRUE(json["points"][2]["solver_seconds"].is_null());
+  EXPECT_TRUE(json["losses"][0]["ours"].is_null());
+  EXPECT_EQ(json["losses"][0]["factor"], "Infinity");
+  EXPECT_TRUE(Json::parse(report_json(one_scene({})))["scenes"][0]["trade"].is_null());
+}
+
 TEST(ReportJson, ClaimedPassWithoutItsToleranceIsWrittenAsFail) {
   SceneReport scene;
   scene.checks = {passing_check()};
@@ -476,6 +532,19 @@ TEST_F(ReportWriter, MakesTheFolderAndNamesWhatItWrote) {
   EXPECT_EQ(read("report.json"), report_json(sample()));
   EXPECT_EQ(read("report.md"), report_markdown(sample(), report_page_absent_because()));
   folder_ = folder_.parent_path().parent_path();
+}
+
+TEST_F(ReportWriter, SceneFilesStandBesideTheReportUnderSafeNames) {
+  Report report;
+  report.scenes.resize(2);
+  report.scenes[0].name = "ball";
+  report.scenes[0].text = "<sdf/>";
+  report.scenes[1].name = "../a b";
+  report.scenes[1].text = "<robot/>";
+  write_report(report, folder_.string());
+  EXPECT_EQ(read("scenes/01-ball.sdf"), "<sdf/>");
+  EXPECT_EQ(read("scenes/02-.._a_b.sdf"), "<robot/>");
+  EXPECT_EQ(Json::parse(read("report.json"))["scenes"][1]["file"], "scenes/02-.._a_b.sdf");
 }
 
 TEST_F(ReportWriter, PageOfTheSampleIsOneSmallFileWithAllTexts) {

@@ -109,6 +109,48 @@ SceneReport scene(std::string name, std::string title, std::string description) 
   return result;
 }
 
+/// A ball that bounces with e on a plane; a contact's force where it is down.
+Playback::PlaybackTrack ball_track(const std::string& engine, double e) {
+  Playback::PlaybackTrack track;
+  track.engine = engine;
+  constexpr double kFrame = 1.0 / 30.0;
+  for (int k = 0; k <= 150; ++k) {
+    Playback::Frame frame;
+    frame.time = k * kFrame;
+    const double height = bounce_height(frame.time, 1.0, e);
+    frame.poses = {{{0.0, 0.0, 0.1 + height}, {1.0, 0.0, 0.0, 0.0}}};
+    if (height < 0.02) frame.contacts = {{1, 0, {0.0, 0.0, 0.0}, {0.0, 0.0, kGravity}}};
+    frame.all_contacts = frame.contacts.size();
+    track.frames.push_back(frame);
+  }
+  return track;
+}
+
+Playback ball_playback(double e, double bullet_e) {
+  Playback playback;
+  playback.gravity = {0.0, 0.0, -kGravity};
+  playback.bodies = {{"ground", "fixed", {}}, {"ball", "dynamic", {{0.0, 0.0, 1.1}}}};
+  playback.shapes = {{"surface", 0, "half_space", {}, -1, {}},
+                     {"shape", 1, "sphere", {0.1}, -1, {}}};
+  playback.tracks = {ball_track("signorini", e), ball_track("bullet", bullet_e)};
+  return playback;
+}
+
+/// Ours at two steps, Bullet in two profiles: one of Bullet's is cheaper than ours at its error.
+Trade ball_trade() {
+  return {.error = "apex height after the first bounce",
+          .unit = "m",
+          .reference = "closed form",
+          .scale = 1.0,
+          .duration = 5.0,
+          .points = {{"Signorini, 1e-08", "signorini", 0.004, 3e-9, 0.012, 0.004},
+                     {"Bullet, neutral, 50 iterations", "bullet", 0.004, 2e-4, 0.0008, -1.0},
+                     {"Bullet, default, 10 iterations", "bullet", 0.004, 0.3, 0.0006, -1.0},
+                     {"Signorini, 1e-08", "signorini", 0.001, 1e-9, 0.05, 0.016},
+                     {"Bullet, neutral, 50 iterations", "bullet", 0.001, 1e-5, 0.003, -1.0},
+                     {"Bullet, default, 10 iterations", "bullet", 0.001, kNaN, 0.002, -1.0}}};
+}
+
 SceneReport ball_drop(double e, double bullet_e) {
   SceneReport result = scene(
       fmt::format("ball-drop-e{}", e), fmt::format("Ball dropped, e = {}", e),
@@ -116,6 +158,8 @@ SceneReport ball_drop(double e, double bullet_e) {
       "speed and e\u00b2 of the energy; the apex after the first bounce is e\u00b2 h. Bullet's "
       "default "
       "profile loses restitution to speculative contacts (v = e v\u207b \u2212 gap/dt).");
+  result.playback = ball_playback(e, bullet_e);
+  result.trade = ball_trade();
   const Check apex = check(
       "apex height after the first bounce", "closed form", "m", e * e * (1.0 + 3e-9), e * e, 1e-6,
       "e\u00b2 h; the contact time is found to 1e-9 s, which moves the apex by "

@@ -264,6 +264,51 @@ INSTANTIATE_TEST_SUITE_P(
       return name;
     });
 
+TEST(BuiltinScenes, ErrorsThatScenesNameAreChecksOfBothEngines) {
+  int named = 0;
+  for (const char* name : {"free-flight", "ball-drop-e0", "ball-drop-e0.5", "wedge",
+                           "newtons-cradle", "rod-on-two-supports", "box-landing-flat"}) {
+    const BuiltinScene& scene = *find_builtin_scene(name);
+    const std::string error = load_builtin_scene(scene).error;
+    ASSERT_FALSE(error.empty()) << name;
+    RunOptions options;
+    options.studies = false;
+    const SceneReport report = validate_builtin(scene, options);
+    for (const char* engine : {"signorini", "bullet"}) {
+      named += std::any_of(report.checks.begin(), report.checks.end(), [&](const Check& check) {
+        return check.name == error && check.engine == engine;
+      });
+    }
+  }
+  EXPECT_EQ(named, 2 * 7);
+}
+
+TEST(Trade, EveryWayHasAnErrorAndTheQuarterStepErrsLess) {
+  RunOptions options;
+  options.studies = false;
+  options.trade = true;
+  const SceneReport report = validate_builtin(*find_builtin_scene("free-flight"), options);
+  ASSERT_TRUE(report.trade.has_value());
+  const std::vector<TradePoint>& points = report.trade->points;
+  ASSERT_EQ(points.size(), 6u);
+  EXPECT_EQ(report.trade->unit, "m");
+  for (const TradePoint& point : points) EXPECT_GE(point.whole_seconds, 0.0) << point.solver;
+  // First order: g t h/2.
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(points[i].error / points[i + 3].error, 4.0, 1e-6);
+}
+
+TEST(Trade, WhatAShortRunDoesNotReachIsANotice) {
+  RunOptions options;
+  options.trade = true;
+  options.bullet = false;
+  options.studies = false;
+  options.duration = 0.1;  // before the first bounce
+  const SceneReport report = validate_builtin(*find_builtin_scene("ball-drop-e0.5"), options);
+  EXPECT_FALSE(report.trade.has_value());
+  ASSERT_FALSE(report.notices.empty());
+  EXPECT_NE(report.notices.back().find("apex 1 above the plane"), std::string::npos);
+}
+
 /// The quick built-in scenes, whole: what the default report must show.
 class QuickScenes : public testing::TestWithParam<const char*> {};
 

@@ -89,12 +89,17 @@ TEST(SdfReader, PosesGoThroughTheFrameGraph) {
 TEST(SdfReader, ReadsTheNamespacedElements) {
   const Scene scene = read(
       "<signorini:duration>7.5</signorini:duration><signorini:title>A  title</signorini:title>"
-      "<signorini:pairing>multiply</signorini:pairing>" +
+      "<signorini:pairing>multiply</signorini:pairing><signorini:error> the  apex "
+      "</signorini:error>"
+      "<signorini:error_scale>2.5</signorini:error_scale>" +
       box_model("<signorini:linear_velocity>1 2 3</signorini:linear_velocity>"
                 "<signorini:angular_velocity>0 0 4</signorini:angular_velocity>"));
   EXPECT_EQ(scene.duration, 7.5);
   EXPECT_EQ(scene.title, "A title");
   EXPECT_EQ(scene.rule, PairingRule::kMultiply);
+  EXPECT_EQ(scene.error, "the apex");
+  EXPECT_EQ(scene.error_scale, 2.5);
+  EXPECT_NE(scene.text.find("<signorini:error> the  apex"), std::string::npos);
   const Velocity v = velocity(scene.bodies[0], scene.state[0]);
   EXPECT_NEAR((v.linear - Vec3(1.0, 2.0, 3.0)).norm(), 0.0, 1e-15);
   EXPECT_NEAR((v.angular - Vec3(0.0, 0.0, 4.0)).norm(), 0.0, 1e-15);

@@ -125,6 +125,30 @@ TEST_F(Program, BuiltinSceneByName) {
   EXPECT_EQ(report()["scenes"][0]["command"], "signorini-validate wedge");
 }
 
+TEST_F(Program, ReportIsMadeAgainFromItsFolderToTheBit) {
+  const std::string scene = write("ball.sdf", kBallOnPlane);
+  ASSERT_EQ(run("--duration 0.2 wedge ball-drop-e0.5 '" + scene + "'").exit_code, 0);
+  std::filesystem::remove(scene);
+  const std::string again = SIGNORINI_VALIDATE " --verify '" + out() + "'";
+  const Outcome same = shell(again);
+  EXPECT_EQ(same.exit_code, 0) << same.output;
+  EXPECT_NE(same.output.find("3 scenes"), std::string::npos) << same.output;
+  EXPECT_NE(same.output.find(" 0 differences"), std::string::npos) << same.output;
+
+  // One digit of one number, and a scene that is not the one that was run.
+  nlohmann::json report = this->report();
+  report["scenes"][0]["checks"][0]["value"] = 0.125;
+  std::ofstream(out() + "/report.json") << report;
+  const Outcome other = shell(again);
+  EXPECT_EQ(other.exit_code, 1) << other.output;
+  EXPECT_NE(other.output.find("scenes[0].checks[0].value: 0.125, again"), std::string::npos)
+      << other.output;
+  std::filesystem::remove(out() + "/scenes/03-ball.sdf");
+  EXPECT_EQ(shell(again).exit_code, 65);
+  std::ofstream(out() + "/report.json") << "{}";
+  EXPECT_EQ(shell(again).exit_code, 65);
+}
+
 TEST_F(Program, ListNamesTheBuiltinScenes) {
   const Outcome outcome = run("--list");
   EXPECT_EQ(outcome.exit_code, 0);

@@ -117,6 +117,173 @@ async function scenePage(page: Page): Promise<void> {
   await picture(page, 'scene-cursor');
 }
 
+/** How many different colours the 3D view shows, left and right half; 1 is an empty one. */
+async function coloursOfStage(page: Page): Promise<[number, number]> {
+  const shot = await page.locator('.stage canvas').screenshot();
+  return page.evaluate(async (base64) => {
+    const image = new Image();
+    image.src = `data:image/png;base64,${base64}`;
+    await image.decode();
+    const canvas = document.createElement('canvas');
+    canvas.width = image.width;
+    canvas.height = image.height;
+    const pen = canvas.getContext('2d')!;
+    pen.drawImage(image, 0, 0);
+    const half = Math.floor(image.width / 2);
+    const count = (from: number) => new Set(new Uint32Array(pen.getImageData(from, 0, half, image.height).data.buffer)).size;
+    return [count(0), count(half)] as [number, number];
+  }, shot.toString('base64'));
+}
+
+/** The time that the player shows, s. */
+async function shownTime(page: Page): Promise<number> {
+  return Number.parseFloat((await page.locator('.clock').innerText()));
+}
+
+async function playheadPlace(page: Page): Promise<number> {
+  const box = await page.locator('.playhead').first().boundingBox();
+  return box?.x ?? NaN;
+}
+
+async function playback(page: Page): Promise<void> {
+  await openScene(page, 'Ball dropped, e = 0.5');
+  const colours = await coloursOfStage(page);
+  assert.ok(colours.every((count) => count > 20), `colours of the two halves: ${colours.join()}`);
+
+  // The scrubber moves the line in the plots; moving over a plot moves the scrubber.
+  const start = await playheadPlace(page);
+  await page.locator('.scrubber').fill('2.5');
+  assert.equal(await shownTime(page), 2.5);
+  const middle = await playheadPlace(page);
+  assert.ok(middle > start + 50, `the line in the plot stands at ${start}, then at ${middle}`);
+  await picture(page, 'playback');
+  const plot = page.locator('.u-over').first();
+  const width = (await plot.boundingBox())?.width ?? 0;
+  await plot.hover({ position: { x: 0.2 * width, y: 30 } });
+  assert.ok(Math.abs((await shownTime(page)) - 1) < 0.15, `time over a fifth of the plot: ${await shownTime(page)}`);
+  assert.ok(Math.abs(Number(await page.locator('.scrubber').inputValue()) - (await shownTime(page))) < 1e-3);
+
+  // A frame is 1/30 s.
+  await page.locator('.scrubber').fill('2');
+  await page.locator('h1').click();
+  await page.keyboard.press('.');
+  assert.equal(await shownTime(page), 2.033);
+  await page.keyboard.press(',');
+  await page.keyboard.press(',');
+  assert.equal(await shownTime(page), 1.967);
+
+  // Playing moves time on; space stops it.
+  await page.keyboard.press('Home');
+  assert.equal(await shownTime(page), 0);
+  await page.keyboard.press(' ');
+  await page.waitForFunction(() => Number.parseFloat(document.querySelector('.clock')?.textContent ?? '0') > 0.2);
+  await page.keyboard.press(' ');
+  const stopped = await shownTime(page);
+  await page.waitForTimeout(150);
+  assert.equal(await shownTime(page), stopped);
+  await page.keyboard.press(']');
+  assert.equal(await page.locator('.controls select').inputValue(), '2');
+  await page.keyboard.press('f');
+  assert.equal(await page.getByLabel('Forces').isChecked(), false);
+
+  // Dragging turns both views.
+  const before = await page.locator('.stage canvas').screenshot();
+  const box = (await page.locator('.stage canvas').boundingBox())!;
+  await page.mouse.move(box.x + box.width / 4, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 4 + 80, box.y + box.height / 2 - 20, { steps: 4 });
+  await page.mouse.up();
+  assert.notDeepEqual(await page.locator('.stage canvas').screenshot(), before);
+}
+
+function base64(numbers: readonly number[]): string {
+  return Buffer.from(Int16Array.from(numbers).buffer).toString('base64');
+}
+
+/** A thousand boxes and balls that dance, with a contact each, in both engines. */
+function thousandBodies(): object {
+  const count = 1000;
+  const frames = 20;
+  const track = (engine: string) => {
+    const poses: number[] = [];
+    const contacts: number[] = [];
+    const pairs: number[] = [];
+    for (let k = 0; k < frames; ++k) {
+      for (let i = 0; i < count; ++i) {
+        const angle = 0.2 * k + i;
+        poses.push((i % 10) * 100, (Math.floor(i / 10) % 10) * 100, Math.floor(i / 100) * 100 + Math.round(20 * Math.sin(angle)),
+          Math.round(32767 * Math.cos(angle / 2)), Math.round(32767 * Math.sin(angle / 2)), 0, 0);
+        contacts.push((i % 10) * 100, (Math.floor(i / 10) % 10) * 100, Math.floor(i / 100) * 100 - 40, 0, 0, 1000);
+        pairs.push(i + 1, 0);
+      }
+    }
+    const axes = new Array<number>(3 * count);
+    return { engine, time: Array.from({ length: frames }, (_, k) => k / 10),
+      poses: { middle: axes.fill(0).slice(), step: axes.fill(0.01).slice(), data: base64(poses) },
+      contacts: { count: new Array<number>(frames).fill(count), count_whole: new Array<number>(frames).fill(count),
+        point_middle: [0, 0, 0], point_step: [0.01, 0.01, 0.01], force_step: 0.01, bodies: base64(pairs), data: base64(contacts) } };
+  };
+  const still = { position: [0, 0, 0], orientation: [1, 0, 0, 0] };
+  const numbers = Array.from({ length: count }, (_, i) => i + 1);
+  return {
+    gravity: [0, 0, -9.8], surfaces: [],
+    bodies: [{ name: 'ground', kind: 'fixed', ...still }, ...numbers.map((i) => ({ name: `body ${i}`, kind: 'dynamic', ...still }))],
+    shapes: [{ name: 'ground', body: 0, kind: 'half_space', sizes: [], surface: null, ...still },
+      ...numbers.map((i) => ({ name: 'shape', body: i, kind: i % 2 ? 'box' : 'sphere', sizes: i % 2 ? [0.4, 0.4, 0.4] : [0.4], surface: null, ...still }))],
+    tracks: [track('signorini'), track('bullet')],
+  };
+}
+
+/** A copy of the sample report whose first scene has another playback. */
+function withPlayback(name: string, playback: object): string {
+  const page = readFileSync(reportPath as string, 'utf8');
+  const opening = '<script type="application/json" id="report">';
+  const from = page.indexOf(opening) + opening.length;
+  const to = page.indexOf('</script>', from);
+  const report = JSON.parse(page.slice(from, to)) as { scenes: { playback: object }[] };
+  report.scenes[0]!.playback = playback;
+  const file = join(pictures as string, name);
+  writeFileSync(file, page.slice(0, from) + JSON.stringify(report).replace(/</g, '\\u003c') + page.slice(to));
+  return file;
+}
+
+/** Prints the script's thread time a frame: the page promises at most 8 ms. */
+async function manyBodies(page: Page): Promise<void> {
+  await page.locator('.scenes tbody th a').first().waitFor();
+  await page.evaluate(() => { location.hash = `#/scene/${encodeURIComponent('ball-drop-e0')}`; });
+  await page.locator('.stage canvas').waitFor();
+  const session = await page.context().newCDPSession(page);
+  await session.send('Performance.setTimeDomain' as 'Performance.enable', { timeDomain: 'threadTicks' });
+  await session.send('Performance.enable');
+  const script = async () => (await session.send('Performance.getMetrics')).metrics
+    .find((metric) => metric.name === 'ScriptDuration')?.value ?? NaN;
+  // Scrubbing: every input is one frame, drawn at once.
+  const scrub = (steps: number) => page.evaluate((count) => {
+    const slider = document.querySelector<HTMLInputElement>('.scrubber')!;
+    for (let k = 0; k < count; ++k) {
+      slider.value = String(1.9 * (k / count));
+      slider.dispatchEvent(new Event('input'));
+    }
+  }, steps);
+  await scrub(5);
+  const frames = 40;
+  const before = await script();
+  await scrub(frames);
+  const milliseconds = (1000 * ((await script()) - before)) / frames;
+  assert.ok(milliseconds > 0 && (await shownTime(page)) > 1.8);
+  console.log(`script time a frame, 1000 bodies in each of two views: ${milliseconds.toFixed(2)} ms`);
+  await picture(page, 'thousand-bodies');
+}
+
+async function errorAgainstCost(page: Page): Promise<void> {
+  assert.ok(await page.locator('.scatter .means path').count() >= 5);
+  assert.ok(await page.locator('.losses tbody tr').count() >= 1);
+  assert.match(await page.locator('.losses').innerText(), /Bullet, neutral/);
+  await page.locator('.scatter').screenshot({ path: join(pictures as string, 'scatter.png') });
+  await page.locator('.scatter .points a').first().dispatchEvent('click');
+  await page.locator('article').waitFor();
+}
+
 async function keyboard(page: Page): Promise<void> {
   const heading = () => page.locator('h1').innerText();
   await page.keyboard.press('ArrowRight');
@@ -199,6 +366,9 @@ async function otherSchema(page: Page): Promise<void> {
 const steps: [string, View, (page: Page) => Promise<void>][] = [
   ['front page, filter, sort', { width: 1280 }, frontPage],
   ['scene page, plots, shared cursor', { width: 1280 }, scenePage],
+  ['3D playback', { width: 1280 }, playback],
+  ['a thousand bodies', { width: 560, file: withPlayback('thousand.html', thousandBodies()) }, manyBodies],
+  ['error against cost', { width: 1280 }, errorAgainstCost],
   ['keyboard', { width: 1280 }, keyboard],
   ['texts are only texts', { width: 1280 }, hostileTexts],
   ['plots of many lines', { width: 1280 }, manyLines],
@@ -214,7 +384,7 @@ const steps: [string, View, (page: Page) => Promise<void>][] = [
 // A browser of its own, with a new profile that is removed at the end.
 const browser = await chromium.launch({
   executablePath: browserPath,
-  args: ['--no-sandbox', '--disable-gpu', '--no-first-run', '--disable-background-networking',
+  args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist', '--no-first-run', '--disable-background-networking',
     '--disable-component-update', '--disable-sync', '--disable-dev-shm-usage'],
 });
 try {

@@ -1,0 +1,163 @@
+#include "bench/tradeoff.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace signorini::bench {
+namespace {
+
+// A panel, in pixels.
+constexpr double kPanelWidth = 760.0;
+constexpr double kPanelHeight = 360.0;
+constexpr double kLeft = 70.0;
+constexpr double kRight = 150.0;
+constexpr double kTop = 40.0;
+constexpr double kBottom = 50.0;
+
+/// Okabe and Ito's colours, and a shape each: told apart without colour.
+struct Look {
+  const char* library;
+  const char* colour;
+  const char* shape;  ///< a path of about 10 x 10 about the origin
+};
+constexpr Look kLooks[] = {
+    {"Signorini", "#0072b2", "M-4.5 0A4.5 4.5 0 1 0 4.5 0A4.5 4.5 0 1 0 -4.5 0Z"},
+    {"Bullet", "#d55e00", "M0 -5.5L5.5 0 0 5.5 -5.5 0Z"},
+    {"ODE", "#009e73", "M-4.5 -4.5H4.5V4.5H-4.5Z"},
+    {"DART", "#cc79a7", "M0 -5L5 4H-5Z"},
+    {"Siconos", "#b8860b", "M0 5L5 -4H-5Z"},
+};
+
+const Look& look_of(const std::string& library) {
+  const auto* found = std::find_if(std::begin(kLooks), std::end(kLooks),
+                                   [&](const Look& look) { return library == look.library; });
+  return found == std::end(kLooks) ? kLooks[0] : *found;
+}
+
+/// A decade axis from value to pixel.
+struct DecadeAxis {
+  int low = 0;
+  int high = 1;
+  double from = 0.0;
+  double to = 1.0;
+
+  DecadeAxis(double least, double most, double from_pixel, double to_pixel)
+      : low(static_cast<int>(std::floor(std::log10(least)))),
+        high(std::max(low + 1, static_cast<int>(std::ceil(std::log10(most) - 1e-9)))),
+        from(from_pixel),
+        to(to_pixel) {}
+  [[nodiscard]] double at(double value) const {
+    return from + (std::log10(value) - low) / (high - low) * (to - from);
+  }
+};
+
+std::string axes_svg(const DecadeAxis& x, const DecadeAxis& y, double top) {
+  std::string svg;
+  for (int e = x.low; e <= x.high; ++e) {
+    const double at = x.at(std::pow(10.0, e));
+    svg += fmt::format(
+        "<path d=\"M{0:.1f} {1:.1f}V{2:.1f}\" stroke=\"#ddd\"/><text x=\"{0:.1f}\" y=\"{3:.1f}\" "
+        "text-anchor=\"middle\">1e{4}</text>\n",
+        at, top + kTop, top + kPanelHeight - kBottom, top + kPanelHeight - kBottom + 16.0, e);
+  }
+  for (int e = y.low; e <= y.high; ++e) {
+    const double at = y.at(std::pow(10.0, e));
+    svg += fmt::format(
+        "<path d=\"M{0:.1f} {1:.1f}H{2:.1f}\" stroke=\"#ddd\"/><text x=\"{3:.1f}\" y=\"{4:.1f}\" "
+        "text-anchor=\"end\">1e{5}</text>\n",
+        kLeft, at, kPanelWidth - kRight, kLeft - 6.0, at + 4.0, e);
+  }
+  return svg + fmt::format(
+                   "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">seconds (shifted "
+                   "geometric mean)</text><text transform=\"translate(16 {:.1f}) rotate(-90)\" "
+                   "text-anchor=\"middle\">natural residual</text>\n",
+                   0.5 * (kLeft + kPanelWidth - kRight), top + kPanelHeight - 14.0,
+                   top + 0.5 * kPanelHeight);
+}
+
+std::string panel_svg(std::span<const LevelScore> scores, const ProblemClass& which, double top) {
+  std::vector<LevelScore> dots;
+  for (const LevelScore& score : scores) {
+    const bool solved_all =
+        score.problems > 0 && score.refused == 0 && score.solved == score.problems;
+    if (score.which == which && solved_all) dots.push_back(score);
+  }
+  std::string svg = fmt::format(
+      "<text x=\"{:.1f}\" y=\"{:.1f}\" font-weight=\"bold\">{}, up to {} rows{}</text>\n", kLeft,
+      top + 24.0, which.form, which.rows,
+      dots.empty() ? ": nobody solves all problems at any level" : "");
+  if (dots.empty()) return svg;
+  const auto by_time = [](const auto& a, const auto& b) { return a.mean_seconds < b.mean_seconds; };
+  const auto by_level = [](const auto& a, const auto& b) { return a.level < b.level; };
+  const auto [fast, slow] = std::minmax_element(dots.begin(), dots.end(), by_time);
+  const auto [fine, coarse] = std::minmax_element(dots.begin(), dots.end(), by_level);
+  const DecadeAxis x(fast->mean_seconds, slow->mean_seconds, kLeft, kPanelWidth - kRight);
+  const DecadeAxis y(fine->level, coarse->level, top + kPanelHeight - kBottom, top + kTop);
+  svg += axes_svg(x, y, top);
+
+  const std::vector<LevelScore> front = pareto_front(scores, which);
+  std::string line;
+  for (const LevelScore& score : front) {
+    line += fmt::format("{}{:.1f} {:.1f}", line.empty() ? "M" : "L", x.at(score.mean_seconds),
+                        y.at(score.level));
+  }
+  svg += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"#444\" stroke-width=\"1.5\"/>\n", line);
+  for (const LevelScore& dot : dots) {
+    const Look& look = look_of(dot.library);
+    svg += fmt::format(
+        "<path d=\"{}\" transform=\"translate({:.1f} {:.1f})\" fill=\"{}\" fill-opacity=\"0.75\">"
+        "<title>{} ({}): {:g} in {:.3g} s</title></path>\n",
+        look.shape, x.at(dot.mean_seconds), y.at(dot.level), look.colour, dot.solver, dot.library,
+        dot.level, dot.mean_seconds);
+  }
+  for (const LevelScore& score : front) {
+    svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"10\">{}</text>\n",
+                       x.at(score.mean_seconds) + 7.0, y.at(score.level) - 6.0, score.solver);
+  }
+  return svg;
+}
+
+std::string legend_svg(double top) {
+  std::string svg;
+  double y = top;
+  for (const Look& look : kLooks) {
+    svg += fmt::format(
+        "<path d=\"{}\" transform=\"translate({:.1f} {:.1f})\" fill=\"{}\"/><text x=\"{:.1f}\" "
+        "y=\"{:.1f}\">{}</text>\n",
+        look.shape, kPanelWidth - kRight + 24.0, y, look.colour, kPanelWidth - kRight + 36.0,
+        y + 4.0, look.library);
+    y += 20.0;
+  }
+  return svg;
+}
+
+}  // namespace
+
+std::string pareto_svg(std::span<const LevelScore> scores, const std::string& title) {
+  std::vector<ProblemClass> largest;  // of each form
+  for (const LevelScore& score : scores) {
+    auto found = std::find_if(largest.begin(), largest.end(),
+                              [&](const auto& c) { return c.form == score.which.form; });
+    if (found == largest.end()) {
+      largest.push_back(score.which);
+    } else {
+      found->rows = std::max(found->rows, score.which.rows);
+    }
+  }
+  const double height = 40.0 + kPanelHeight * static_cast<double>(largest.size());
+  std::string svg = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
+      "viewBox=\"0 0 {0:.0f} {1:.0f}\" font-family=\"sans-serif\" font-size=\"12\">\n"
+      "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n<text x=\"{2:.0f}\" y=\"26\" "
+      "font-size=\"16\">{3}</text>\n",
+      kPanelWidth, height, kLeft, title);
+  double top = 40.0;
+  for (const ProblemClass& which : largest) {
+    svg += panel_svg(scores, which, top) + legend_svg(top + kTop + 10.0);
+    top += kPanelHeight;
+  }
+  return svg + "</svg>\n";
+}
+
+}  // namespace signorini::bench

@@ -1,0 +1,74 @@
+#pragma once
+
+#include "bench/peers_study.h"
+#include "bench/performance_profile.h"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace signorini::bench {
+
+/// The runs of one dial position: every solver on every problem, told this tolerance.
+struct DialRuns {
+  double tolerance = 1e-8;  ///< natural residual that was asked for
+  PeersResult result;
+};
+
+/// A problem, by what decides which solver suits it.
+struct ProblemClass {
+  std::string form;  ///< "lcp", "pyramid", "box", "cone" ...
+  int rows = 0;      ///< upper bound of the class: a power of four times 16
+  [[nodiscard]] bool operator==(const ProblemClass&) const = default;
+};
+
+/// A solver over the problems of a class at a level of error. What an answer errs is the natural
+/// residual of its certificate, judged by the runner on the caller's data; what was asked for does
+/// not count. Of the dial's positions the fastest whose answer is good enough counts.
+struct LevelScore {
+  ProblemClass which;
+  double level = 1e-8;  ///< natural residual
+  std::string solver;
+  std::string library;
+  int problems = 0;  ///< of the class that the solver did not refuse
+  int solved = 0;
+  int refused = 0;
+  /// Shifted geometric mean exp(mean(log(t + s))) - s of the seconds, s = kShiftSeconds, what was
+  /// not solved counting as penalty_seconds (Mittelmann's benchmarks); s.
+  double mean_seconds = 0.0;
+};
+
+inline constexpr double kShiftSeconds = 1e-4;
+
+/// All classes, levels and solvers, in the order in which they first appear; solvers that refused
+/// every problem of a class are left out.
+/// @param penalty_seconds time of a problem that was not solved, > 0
+[[nodiscard]] std::vector<LevelScore> level_scores(std::span<const DialRuns> dial,
+                                                   std::span<const double> levels,
+                                                   double penalty_seconds);
+
+/// The scores that no other of the same class beats in level and mean time: error against time.
+/// Only scores that solved all problems of the class, refused ones included.
+[[nodiscard]] std::vector<LevelScore> pareto_front(std::span<const LevelScore> scores,
+                                                   const ProblemClass& which);
+
+/// Performance profiles at a level, one panel a form.
+[[nodiscard]] std::vector<ProfilePanel> level_profiles(std::span<const DialRuns> dial,
+                                                       double level);
+
+/// One line a run and dial position: what was asked, what the answer errs, seconds.
+[[nodiscard]] std::string tradeoff_csv(std::span<const DialRuns> dial);
+/// One line a score.
+[[nodiscard]] std::string scores_csv(std::span<const LevelScore> scores);
+
+/// The page: remarks, the recommendation table (for this error, at this size, use this: of the
+/// solvers that solved all problems of the class the fastest, ours and, where a peer is faster, the
+/// peer), the Pareto fronts, success rates with mean times.
+[[nodiscard]] std::string tradeoff_markdown(std::span<const LevelScore> scores,
+                                            const std::vector<std::string>& remarks);
+
+/// Error against time as an SVG file, one panel a form at its largest class: a dot a solver and
+/// level that solved everything, the Pareto front as a line.
+[[nodiscard]] std::string pareto_svg(std::span<const LevelScore> scores, const std::string& title);
+
+}  // namespace signorini::bench

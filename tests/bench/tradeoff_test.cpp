@@ -1,0 +1,114 @@
+#include "bench/tradeoff.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+
+namespace signorini::bench {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+PeersRow row(const std::string& problem, int n, const std::string& solver, double residual,
+             double seconds, Verdict verdict = Verdict::kSolved) {
+  PeersRow row;
+  row.problem = problem;
+  row.form = "lcp";
+  row.n = n;
+  row.solver = solver;
+  row.library = solver == "theirs" ? "ODE" : "Signorini";
+  row.run.verdict = verdict;
+  row.run.seconds = seconds;
+  row.run.certificate.natural_residual = residual;
+  return row;
+}
+
+/// Two positions of the dial, two problems of one class. "sweep" is fast and coarse, and errs more
+/// than it was asked at 1e-8; "newton" is slow and exact; "theirs" fails the second problem.
+std::vector<DialRuns> two_positions() {
+  DialRuns coarse{.tolerance = 1e-2, .result = {}};
+  coarse.result.rows = {
+      row("a", 60, "sweep", 5e-3, 1e-4),   row("a", 60, "newton", 1e-12, 1e-2),
+      row("a", 60, "theirs", 1e-9, 1e-3),  row("b", 64, "sweep", 9e-3, 4e-4),
+      row("b", 64, "newton", 1e-13, 1e-2), row("b", 64, "theirs", kNaN, -1.0, Verdict::kTimedOut)};
+  DialRuns fine{.tolerance = 1e-8, .result = {}};
+  fine.result.rows = {row("a", 60, "sweep", 1e-5, 2e-3), row("a", 60, "newton", 1e-12, 8e-3),
+                      row("b", 64, "sweep", 1e-5, 2e-3), row("b", 64, "newton", 1e-13, 2e-2),
+                      row("b", 64, "idle", kNaN, -1.0, Verdict::kRefused)};
+  return {coarse, fine};
+}
+
+const LevelScore& score(const std::vector<LevelScore>& scores, const std::string& solver,
+                        double level) {
+  for (const LevelScore& one : scores) {
+    if (one.solver == solver && one.level == level) return one;
+  }
+  throw std::out_of_range(solver);
+}
+
+TEST(Tradeoff, AnswersCountByWhatTheyErrNotByWhatWasAsked) {
+  const std::vector<double> levels = {1e-2, 1e-4, 1e-8};
+  const std::vector<LevelScore> scores = level_scores(two_positions(), levels, 5.0);
+  EXPECT_EQ(score(scores, "sweep", 1e-2).solved, 2);
+  EXPECT_EQ(score(scores, "sweep", 1e-4).solved, 2);
+  EXPECT_EQ(score(scores, "sweep", 1e-8).solved, 0);
+  EXPECT_EQ(score(scores, "newton", 1e-8).solved, 2);
+  EXPECT_EQ(score(scores, "theirs", 1e-8).solved, 1);
+  EXPECT_THROW((void)score(scores, "idle", 1e-8), std::out_of_range) << "refused everything";
+  for (const LevelScore& one : scores) EXPECT_EQ(one.which, (ProblemClass{"lcp", 64}));
+}
+
+TEST(Tradeoff, MeanIsShiftedGeometricOfTheFastestPositions) {
+  const std::vector<double> levels = {1e-4};
+  const std::vector<LevelScore> scores = level_scores(two_positions(), levels, 5.0);
+  const double s = kShiftSeconds;
+  EXPECT_NEAR(score(scores, "newton", 1e-4).mean_seconds, std::sqrt((8e-3 + s) * (1e-2 + s)) - s,
+              1e-12);
+  EXPECT_NEAR(score(scores, "theirs", 1e-4).mean_seconds, std::sqrt((1e-3 + s) * (5.0 + s)) - s,
+              1e-12);
+}
+
+TEST(Tradeoff, FrontHoldsWhatNothingBeatsAndOnlyWhoSolvesAll) {
+  const std::vector<double> levels = {1e-2, 1e-4, 1e-8};
+  const std::vector<LevelScore> scores = level_scores(two_positions(), levels, 5.0);
+  const std::vector<LevelScore> front = pareto_front(scores, {"lcp", 64});
+  ASSERT_EQ(front.size(), 3u);
+  EXPECT_EQ(front[0].solver + front[1].solver + front[2].solver, "sweepsweepnewton");
+  EXPECT_TRUE(pareto_front(scores, {"cone", 64}).empty());
+}
+
+TEST(Tradeoff, ProfilesTakeUnsolvedAsInfinite) {
+  const std::vector<ProfilePanel> panels = level_profiles(two_positions(), 1e-8);
+  ASSERT_EQ(panels.size(), 1u);
+  const std::vector<ProfileCurve> curves = profile_curves(panels[0]);
+  ASSERT_EQ(curves.size(), 3u);
+  EXPECT_EQ(curves[0].name, "newton");
+  EXPECT_EQ(curves[0].solved(), 2);
+}
+
+TEST(Tradeoff, PageRecommendsOfOursTheFastestThatSolvesAllAndNamesFasterPeers) {
+  const std::vector<double> levels = {1e-2, 1e-8};
+  std::vector<DialRuns> dial = two_positions();
+  std::vector<LevelScore> scores = level_scores(dial, levels, 5.0);
+  std::string page = tradeoff_markdown(scores, {"remark"});
+  EXPECT_NE(page.find("| lcp | 64 | `sweep`"), std::string::npos) << page;
+  EXPECT_EQ(page.find("is faster"), std::string::npos) << page;
+
+  dial[0].result.rows[5] = row("b", 64, "theirs", 1e-9, 1e-5);
+  dial[0].result.rows[2] = row("a", 60, "theirs", 1e-9, 1e-5);
+  scores = level_scores(dial, levels, 5.0);
+  page = tradeoff_markdown(scores, {});
+  EXPECT_NE(page.find("(ODE theirs is faster"), std::string::npos) << page;
+  EXPECT_NE(pareto_svg(scores, "t").find("theirs"), std::string::npos);
+}
+
+TEST(Tradeoff, NothingToCompareIsAnEmptyPage) {
+  const std::vector<double> levels = {1e-4};
+  EXPECT_TRUE(level_scores({}, levels, 1.0).empty());
+  EXPECT_TRUE(level_profiles({}, 1e-4).empty());
+  EXPECT_NE(tradeoff_markdown({}, {}).find("# The trade"), std::string::npos);
+  EXPECT_NE(pareto_svg({}, "t").find("</svg>"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace signorini::bench
