@@ -27,9 +27,9 @@ function tracksOf(playback: Playback): Track[] {
 
 /** What the canvas cannot say. */
 function captionOf(stage: Stage, tracks: readonly Track[]): string {
-  const parts = [`Grid ${formatNumber(stage.cell)} m.`];
-  if (stage.unitForce > 0) {
-    parts.push(`Arrows: force on the moving body, at most three times as long as ${formatNumber(stage.unitForce)} N.`);
+  const parts = stage.cell === null ? [] : [`Grid ${formatNumber(stage.cell)} m.`];
+  if (stage.longestForce > 0) {
+    parts.push(`Arrows: force on the moving body; the longest stand for ${formatNumber(stage.longestForce)} N or more.`);
   }
   const thinned = tracks.filter((track) => track.found.some((count, k) =>
     count > (track.firstContact[k + 1] ?? 0) - (track.firstContact[k] ?? 0)));

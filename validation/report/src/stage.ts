@@ -171,7 +171,7 @@ class Side {
   private readonly disposables: { dispose(): void }[] = [];
 
   constructor(readonly track: Track, playback: Playback,
-    private readonly size: number, centre: THREE.Vector3, private readonly unitForce: number, dark: boolean) {
+    private readonly size: number, centre: THREE.Vector3, private readonly longestForce: number, dark: boolean) {
     this.poses = new Float32Array(7 * track.bodies);
     this.matrices = Array.from({ length: track.bodies }, () => new THREE.Matrix4());
     this.scene.add(new THREE.HemisphereLight(0xffffff, 0xb4b4b4, 2.6));
@@ -289,7 +289,7 @@ class Side {
       kScale.setScalar(dot);
       this.points.setMatrixAt(k - first, kProduct.compose(kPosition, kNoTurn, kScale));
       kDirection.set(contacts[at + 3] ?? 0, contacts[at + 4] ?? 0, contacts[at + 5] ?? 0);
-      const length = arrowLength(kDirection.length(), this.unitForce, this.markSize);
+      const length = arrowLength(kDirection.length(), this.longestForce, this.markSize);
       if (length <= 0) continue;
       kTurn.setFromUnitVectors(kUp, kDirection.normalize());
       kScale.set(1.1 * dot, 1.1 * dot, length);
@@ -319,9 +319,9 @@ function gridCell(size: number): number {
   return niceBelow(size / 2);
 }
 
-/** Proportional to the force: the unit force is 0.3 of the scene, nothing is longer than 0.9 of it. */
-function arrowLength(force: number, unitForce: number, size: number): number {
-  return unitForce > 0 ? Math.min(0.9, (0.3 * force) / unitForce) * size : 0;
+/** Proportional to the force, up to 0.9 of the size. */
+function arrowLength(force: number, longest: number, size: number): number {
+  return longest > 0 ? 0.9 * Math.min(1, force / longest) * size : 0;
 }
 
 let renderer: THREE.WebGLRenderer | null = null;
@@ -340,9 +340,10 @@ export class Stage {
   readonly canvas: HTMLCanvasElement;
   readonly camera: THREE.PerspectiveCamera;
   readonly target: THREE.Vector3;
-  /** Edge of a cell of the grids, m; the force that an arrow of 0.3 of the scene stands for, N. */
-  readonly cell: number;
-  readonly unitForce: number;
+  /** Edge of a cell of the grids, m; null without a plane. */
+  readonly cell: number | null;
+  /** What the longest arrows stand for, N; 0 without forces. */
+  readonly longestForce: number;
   private readonly renderer: THREE.WebGLRenderer;
   private readonly radius: number;
   private sides: Side[] = [];
@@ -357,9 +358,9 @@ export class Stage {
     const { center, radius } = framing(tracks, playback);
     this.target = center;
     this.radius = radius;
-    this.cell = gridCell(radius);
+    this.cell = playback.shapes.some((shape) => shape.kind === 'half_space') ? gridCell(radius) : null;
     const typical = typicalForce(tracks);
-    this.unitForce = typical > 0 ? niceBelow(typical) : 0;
+    this.longestForce = typical > 0 ? 3 * niceBelow(typical) : 0;
     this.camera = new THREE.PerspectiveCamera(kFieldOfView, 1, radius / 100, radius * 200);
     this.camera.up.set(0, 0, 1);
   }
@@ -400,7 +401,7 @@ export class Stage {
     this.dispose();
     this.isDark = dark;
     this.sides = this.tracks.map((track) =>
-      new Side(track, this.playback, this.radius, this.target, this.unitForce, dark));
+      new Side(track, this.playback, this.radius, this.target, this.longestForce, dark));
   }
 
   dispose(): void {

@@ -50,13 +50,13 @@ function picture(page: Page, name: string): Promise<Buffer> {
 }
 
 async function openScene(page: Page, title: string): Promise<void> {
-  await page.getByRole('link', { name: title, exact: true }).click();
+  await page.locator('.scenes').getByRole('link', { name: title, exact: true }).click();
   await page.getByRole('heading', { level: 1, name: title }).waitFor();
 }
 
 /** For each plot, how many of its pixels have exactly each of these colours. */
 function pixelsOfColours(page: Page, colours: number[][]): Promise<number[][]> {
-  return page.evaluate((wanted) => [...document.querySelectorAll('canvas')].map((canvas) => {
+  return page.evaluate((wanted) => [...document.querySelectorAll<HTMLCanvasElement>('.plot canvas')].map((canvas) => {
     const { data } = canvas.getContext('2d')!.getImageData(0, 0, canvas.width, canvas.height);
     const counts = wanted.map(() => 0);
     for (let i = 0; i < data.length; i += 4) {
@@ -127,7 +127,7 @@ async function coloursOfStage(page: Page): Promise<[number, number]> {
     const canvas = document.createElement('canvas');
     canvas.width = image.width;
     canvas.height = image.height;
-    const pen = canvas.getContext('2d')!;
+    const pen = canvas.getContext('2d', { willReadFrequently: true })!;
     pen.drawImage(image, 0, 0);
     const half = Math.floor(image.width / 2);
     const count = (from: number) => new Set(new Uint32Array(pen.getImageData(from, 0, half, image.height).data.buffer)).size;
@@ -278,7 +278,7 @@ async function manyBodies(page: Page): Promise<void> {
 async function errorAgainstCost(page: Page): Promise<void> {
   assert.ok(await page.locator('.scatter .means path').count() >= 5);
   assert.ok(await page.locator('.losses tbody tr').count() >= 1);
-  assert.match(await page.locator('.losses').innerText(), /Bullet, neutral/);
+  assert.match(await page.locator('.losses').innerText(), /Bullet, default/);
   await page.locator('.scatter').screenshot({ path: join(pictures as string, 'scatter.png') });
   await page.locator('.scatter .points a').first().dispatchEvent('click');
   await page.locator('article').waitFor();
