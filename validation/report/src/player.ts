@@ -87,6 +87,7 @@ export class Player {
   private lastTick = 0;
   private readonly place = h('div', { class: 'stage' });
   private readonly still = h('img', { class: 'still', alt: '' });
+  private readonly stillTime = h('span', { class: 'print-only' });
   private readonly playButton = h('button', { type: 'button', class: 'play', click: () => this.toggle() });
   private readonly slider: HTMLInputElement;
   private readonly clockText = h('output', { class: 'clock' });
@@ -115,7 +116,7 @@ export class Player {
       view = noWebGl(error);
     }
     this.element = h('figure', { class: 'player', 'aria-label': '3D playback' }, labels(this.tracks), view, this.still,
-      this.bar(), h('figcaption', {}, this.stage === null ? '' : captionOf(this.stage, this.tracks)));
+      this.bar(), h('figcaption', {}, this.stillTime, this.stage === null ? '' : captionOf(this.stage, this.tracks)));
     this.showState();
   }
 
@@ -212,6 +213,7 @@ export class Player {
     if (this.stage === null) return;
     this.still.src = stillOf(this.stage, this.clock.time, this.show);
     this.still.alt = `The runs at ${formatNumber(this.clock.time)} s`;
+    this.stillTime.textContent = `At ${formatNumber(this.clock.time)} s. `;
     this.fit();
   };
 

@@ -379,7 +379,7 @@ export class Stage {
   resetView(): void {
     const half = (kFieldOfView * Math.PI) / 360;
     const narrow = Math.atan(Math.tan(half) * Math.min(1, this.camera.aspect));
-    const distance = (0.95 * this.radius) / Math.sin(narrow);
+    const distance = (1.03 * this.radius) / Math.sin(narrow);
     this.camera.position.set(0.42, -1, 0.36).normalize().multiplyScalar(distance).add(this.target);
     this.camera.lookAt(this.target);
   }
