@@ -12,12 +12,17 @@ std::string to_text(const StepReport& report) {
       " contacts apart (put back: " + std::to_string(report.contacts_put_back) + "), " +
       std::to_string(report.tangents_left_out) + " tangents without friction, " +
       std::to_string(report.dynamic_bodies_without_rows) + " bodies without contact\n";
+  if (report.bodies_asleep + report.bodies_woken > 0) {
+    text += std::to_string(report.bodies_asleep) +
+            " bodies asleep (woken: " + std::to_string(report.bodies_woken) + "), " +
+            std::to_string(report.contacts_asleep) + " contacts of theirs left out\n";
+  }
   if (!report.accuracy.empty()) {
     text += "accuracy: " + report.accuracy + ", " + number_text(report.work) + " units of work" +
             (report.is_deterministic ? "" : ", limited by time: not deterministic") + "\n";
   }
   text += "seconds: find " + number_text(report.seconds.find) + ", solve " +
-          number_text(report.seconds.solve) + ", move " + number_text(report.seconds.move) + "\n";
+          number_text(report.seconds.solve) + ", project " + number_text(report.seconds.project) + "\n";
   for (std::size_t k = 0; k < report.islands.size(); ++k) {
     const IslandReport& island = report.islands[k];
     text += "island " + count(k) + ": " + std::to_string(island.bodies) + " bodies, " +

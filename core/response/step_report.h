@@ -26,9 +26,9 @@ struct IslandReport {
 
 /// Wall time of the stages of a step, s.
 struct StageSeconds {
-  double find = 0.0;   ///< contacts at the start
-  double solve = 0.0;  ///< rows made, islands solved, impulses applied
-  double move = 0.0;   ///< bodies moved, contacts at the end, overlap projected
+  double find = 0.0;     ///< contacts at the start
+  double solve = 0.0;    ///< rows made, islands solved, bodies moved
+  double project = 0.0;  ///< contacts at the end, overlap projected, the rest
 };
 
 /// What one step did.
@@ -51,7 +51,11 @@ struct StepReport {
   /// after the solve; and those that had to be put back in, whose step was then solved again.
   int contacts_apart = 0;
   int contacts_put_back = 0;
-  int tangents_left_out = 0;  ///< tangential rows not made: contacts without friction
+  int contacts_asleep = 0;     ///< found, of bodies asleep: no rows
+  int bodies_asleep = 0;       ///< after the step
+  int bodies_woken = 0;        ///< in this step
+  double energy_asleep = 0.0;  ///< kinetic energy that bodies lost by falling asleep, J
+  int tangents_left_out = 0;   ///< tangential rows not made: contacts without friction
   int dynamic_bodies_without_rows = 0;
   double kinetic_energy = 0.0;        ///< after the step, J
   double potential_energy = 0.0;      ///< after the step, J

@@ -50,83 +50,6 @@ double may_close(double gap) {
   return gap > kToleratedOverlap ? gap : 0.0;
 }
 
-/// Which contacts are in a step's problem, and how fast each may close.
-class Selection {
- public:
-  Selection(const ContactSet& found, const lcp::Vector& d_dot, const lcp::Vector& d_dot_free,
-            const TimeStepSettings& settings)
-      : found_(found), fate_(found.size(), Fate::kInProblem), allowance_(found.size()) {
-    const double h = settings.step;
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      const Contact& contact = found[i];
-      const double e = contact.material.restitution;
-      const bool touching = contact.gap <= settings.touching_tolerance;
-      const double one_step = std::abs(d_dot_free[i] - d_dot[i]);
-      const bool fast = d_dot[i] < -std::max(settings.restitution_threshold, one_step);
-      const bool would_be_caught = contact.gap + h * d_dot_free[i] < 0.0;
-      const bool bounces = touching && classify(d_dot[i], settings.restitution_threshold) ==
-                                           ContactClass::kColliding;
-      allowance_[i] = bounces ? e * d_dot[i] : may_close(contact.gap) / h;
-      if (e > 0.0 && !touching && fast && would_be_caught) {
-        fate_[i] = Fate::kAboutToBounce;
-      } else if (!settings.full_model && contact.gap > kToleratedOverlap &&
-                 d_dot_free[i] + allowance_[i] > 0.0) {
-        fate_[i] = Fate::kApart;
-      }
-    }
-  }
-
-  /// Those in the problem, or all but those about to bounce.
-  [[nodiscard]] ContactSet contacts(bool with_apart) const {
-    ContactSet chosen;
-    chosen.reserve(found_.size());
-    for (std::size_t i = 0; i < found_.size(); ++i) {
-      if (fate_[i] == Fate::kInProblem || (with_apart && fate_[i] == Fate::kApart)) {
-        chosen.push_back(found_[i]);
-      }
-    }
-    return chosen;
-  }
-  /// Of the contacts in the problem.
-  [[nodiscard]] lcp::Vector allowance() const {
-    lcp::Vector chosen(static_cast<lcp::Index>(found_.size()));
-    lcp::Index count = 0;
-    for (std::size_t i = 0; i < found_.size(); ++i) {
-      if (fate_[i] == Fate::kInProblem) {
-        chosen[count++] = allowance_[i];
-      }
-    }
-    chosen.conservativeResize(count);
-    return chosen;
-  }
-  [[nodiscard]] int apart() const { return count(Fate::kApart); }
-  [[nodiscard]] int about_to_bounce() const { return count(Fate::kAboutToBounce); }
-
-  /// Puts back those that close farther than allowed. @return how many
-  int put_back(const std::vector<Velocity>& velocities, const State& state) {
-    constexpr double kRounding = 1e-13;  // m/s
-    int violated = 0;
-    for (std::size_t i = 0; i < found_.size(); ++i) {
-      if (fate_[i] == Fate::kApart &&
-          gap_velocity(velocities, state, found_[i]) + allowance_[i] < -kRounding) {
-        fate_[i] = Fate::kInProblem;
-        ++violated;
-      }
-    }
-    return violated;
-  }
-
- private:
-  enum class Fate : std::uint8_t { kInProblem, kAboutToBounce, kApart };
-  [[nodiscard]] int count(Fate fate) const {
-    return static_cast<int>(std::count(fate_.begin(), fate_.end(), fate));
-  }
-
-  const ContactSet& found_;
-  std::vector<Fate> fate_;
-  std::vector<double> allowance_;  // m/s
-};
-
 bool is_worse(const lcp::Result& a, const lcp::Result& b) {
   const bool solved = lcp::is_solved(a.status);
   if (solved != lcp::is_solved(b.status)) {
@@ -203,6 +126,91 @@ IslandReport describe(const ContactIsland& island, const lcp::Problem& problem,
 
 }  // namespace
 
+/// Which contacts are in a step's problem, and how fast each may close.
+class TimeStepper::Selection {
+ public:
+  Selection(const ContactSet& found, const lcp::Vector& d_dot, const lcp::Vector& d_dot_free,
+            const TimeStepSettings& settings, const Bodies& bodies, const Sleepers& sleepers)
+      : found_(found), fate_(found.size(), Fate::kInProblem), allowance_(found.size()) {
+    const double h = settings.step;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const Contact& contact = found[i];
+      const double e = contact.material.restitution;
+      const bool touching = contact.gap <= settings.touching_tolerance;
+      const double one_step = std::abs(d_dot_free[i] - d_dot[i]);
+      const bool fast = d_dot[i] < -std::max(settings.restitution_threshold, one_step);
+      const bool would_be_caught = contact.gap + h * d_dot_free[i] < 0.0;
+      const bool bounces = touching && classify(d_dot[i], settings.restitution_threshold) ==
+                                           ContactClass::kColliding;
+      allowance_[i] = bounces ? e * d_dot[i] : may_close(contact.gap) / h;
+      const bool a_sleeps = sleepers.is_asleep(contact.body_a);
+      const bool b_sleeps = sleepers.is_asleep(contact.body_b);
+      if ((a_sleeps && (b_sleeps || !bodies[contact.body_b].is_dynamic())) ||
+          (b_sleeps && !bodies[contact.body_a].is_dynamic())) {
+        fate_[i] = Fate::kAsleep;
+      } else if (a_sleeps || b_sleeps) {  // does not act, or it would have woken it
+        fate_[i] = Fate::kApart;
+      } else if (e > 0.0 && !touching && fast && would_be_caught) {
+        fate_[i] = Fate::kAboutToBounce;
+      } else if (!settings.full_model && contact.gap > kToleratedOverlap &&
+                 d_dot_free[i] + allowance_[i] > 0.0) {
+        fate_[i] = Fate::kApart;
+      }
+    }
+  }
+
+  /// Those in the problem, or those apart with them.
+  [[nodiscard]] ContactSet contacts(bool with_apart) const {
+    ContactSet chosen;
+    chosen.reserve(found_.size());
+    for (std::size_t i = 0; i < found_.size(); ++i) {
+      if (fate_[i] == Fate::kInProblem || (with_apart && fate_[i] == Fate::kApart)) {
+        chosen.push_back(found_[i]);
+      }
+    }
+    return chosen;
+  }
+  /// Of the contacts in the problem.
+  [[nodiscard]] lcp::Vector allowance() const {
+    lcp::Vector chosen(static_cast<lcp::Index>(found_.size()));
+    lcp::Index count = 0;
+    for (std::size_t i = 0; i < found_.size(); ++i) {
+      if (fate_[i] == Fate::kInProblem) {
+        chosen[count++] = allowance_[i];
+      }
+    }
+    chosen.conservativeResize(count);
+    return chosen;
+  }
+  [[nodiscard]] int apart() const { return count(Fate::kApart); }
+  [[nodiscard]] int about_to_bounce() const { return count(Fate::kAboutToBounce); }
+  [[nodiscard]] int asleep() const { return count(Fate::kAsleep); }
+
+  /// Puts back those that close farther than allowed. @return them
+  BodyPairs put_back(const std::vector<Velocity>& velocities, const State& state) {
+    constexpr double kRounding = 1e-13;  // m/s
+    BodyPairs violated;
+    for (std::size_t i = 0; i < found_.size(); ++i) {
+      if (fate_[i] == Fate::kApart &&
+          gap_velocity(velocities, state, found_[i]) + allowance_[i] < -kRounding) {
+        fate_[i] = Fate::kInProblem;
+        violated.emplace_back(found_[i].body_a, found_[i].body_b);
+      }
+    }
+    return violated;
+  }
+
+ private:
+  enum class Fate : std::uint8_t { kInProblem, kAboutToBounce, kApart, kAsleep };
+  [[nodiscard]] int count(Fate fate) const {
+    return static_cast<int>(std::count(fate_.begin(), fate_.end(), fate));
+  }
+
+  const ContactSet& found_;
+  std::vector<Fate> fate_;
+  std::vector<double> allowance_;  // m/s
+};
+
 void TimeStepSettings::validate() const {
   require(step > 0.0 && std::isfinite(step), "step", "finite and > 0", number_text(step) + " s");
   require(gravity.allFinite(), "gravity", "finite", number_text(gravity) + " m/s^2");
@@ -217,6 +225,7 @@ void TimeStepSettings::validate() const {
   require(accuracy.has_value() || !budget.is_limited(), "budget", "unlimited without accuracy",
           number_text(budget.work) + " units, " + number_text(budget.seconds) + " s");
   budget.validate();
+  sleep.validate();
   lcp.validate();
 }
 
@@ -228,6 +237,7 @@ TimeStepper::TimeStepper(Bodies bodies, ContactFinder& finder, const TimeStepSet
       joints_(std::move(joints)),
       island_threads_(island_settings(),
                       settings.lcp.recorder != nullptr ? 1 : std::max(settings.threads, 1)),
+      sleepers_(settings.sleep, static_cast<int>(bodies_.size())),
       joint_memory_(joints_.size()) {
   settings_.validate();
   for (const Body& body : bodies_) {
@@ -252,6 +262,16 @@ void TimeStepper::set_motor(int joint, const JointMotor& motor) {
   changed[joint].motor = motor;
   validate(changed, bodies_);
   joints_ = std::move(changed);
+  sleepers_.wake(joints_[joint].body_a);
+  sleepers_.wake(joints_[joint].body_b);
+}
+
+void TimeStepper::wake(int body) {
+  if (body < 0 || body >= static_cast<int>(bodies_.size())) {
+    throw std::invalid_argument("body: must be in [0, " + std::to_string(bodies_.size()) +
+                                "), got " + std::to_string(body));
+  }
+  sleepers_.wake(body);
 }
 
 /// The bodies with the inertia that the step's problems have.
@@ -271,7 +291,7 @@ Bodies TimeStepper::solved_bodies(const State& state, StepReport& report) const 
 State TimeStepper::with_forces_applied(const State& start) const {
   State state = start;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
-    if (bodies_[k].is_dynamic()) {
+    if (bodies_[k].is_dynamic() && !sleepers_.is_asleep(static_cast<int>(k))) {
       state[k].p += settings_.step * bodies_[k].mass * bodies_[k].gravity_scale * settings_.gravity;
     }
   }
@@ -415,6 +435,9 @@ void TimeStepper::move(const State& start, const ContactSet& contacts, State& st
                                  ? Integrator::kEnergyMomentum
                                  : Integrator::kSemiImplicit;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    if (sleepers_.is_asleep(static_cast<int>(k))) {
+      continue;
+    }
     if (in_contact[k]) {
       integrate_free(bodies_[k], Vec3::Zero(), Vec3::Zero(), settings_.step, in_rows,
                      settings_.orientation, state[k]);
@@ -437,7 +460,9 @@ void TimeStepper::project(const Bodies& solved, State& state, StepReport& report
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const bool leaves = d_dot[i] > kRestingSpeed;
     const bool will_bounce = contacts[i].material.restitution > 0.0 && d_dot[i] < -bounce_speed;
-    if (contacts[i].gap >= 0.0 || !(leaves || will_bounce)) {
+    const bool asleep =
+        sleepers_.is_asleep(contacts[i].body_a) || sleepers_.is_asleep(contacts[i].body_b);
+    if (!asleep && (contacts[i].gap >= 0.0 || !(leaves || will_bounce))) {
       chosen.push_back(contacts[i]);
     }
   }
@@ -462,6 +487,85 @@ void TimeStepper::apply(const Bodies& solved, State& state, StepReport& report) 
   report.energy_change_impact = kinetic_energy(bodies_, state) - before;
 }
 
+/// Wakes what acts with bodies that move: contacts that the free motion closes, all contacts of
+/// driven bodies that move (they may leave), joints. @return how many bodies woke
+int TimeStepper::wake_touched(const State& state, const State& free,
+                              const std::vector<JointRow>& joined) {
+  const std::vector<Velocity> velocities = velocities_of(bodies_, free);
+  BodyPairs acting = body_pairs(joined);
+  const auto may_wake = [&](int sleeper, int other) {
+    return sleepers_.is_asleep(sleeper) && bodies_[other].kind != BodyKind::kFixed &&
+           !sleepers_.is_asleep(other);
+  };
+  for (const Contact& contact : found_) {
+    if (!may_wake(contact.body_a, contact.body_b) && !may_wake(contact.body_b, contact.body_a)) {
+      continue;
+    }
+    const double reach = contact.gap + settings_.step * gap_velocity(velocities, free, contact);
+    if (reach <= kToleratedOverlap || bodies_[contact.body_a].kind == BodyKind::kKinematic ||
+        bodies_[contact.body_b].kind == BodyKind::kKinematic) {
+      acting.emplace_back(contact.body_a, contact.body_b);
+    }
+  }
+  return sleepers_.wake_touched(bodies_, state, acting);
+}
+
+void TimeStepper::settle(State& state, StepReport& report) {
+  if (!sleepers_.is_on()) {
+    return;
+  }
+  BodyPairs pairs = body_pairs(report.contacts);
+  for (const Joint& joint : joints_) {
+    if (!sleepers_.is_asleep(joint.body_a) && !sleepers_.is_asleep(joint.body_b)) {
+      pairs.emplace_back(joint.body_a, joint.body_b);
+    }
+  }
+  report.energy_asleep = sleepers_.settle(bodies_, pairs, settings_.step, state);
+  report.bodies_asleep = sleepers_.count();
+}
+
+/// Solves for the selected contacts until what was left out keeps apart, and moves the bodies.
+/// @return false, with nothing moved, if bodies woke: the selection is then another
+bool TimeStepper::solve_selection(Selection& selection, const Bodies& solved, const State& state,
+                                  const State& free, const std::vector<JointRow>& joined,
+                                  const std::string& detail, State& next, StepReport& report) {
+  report.contacts_left_out = selection.about_to_bounce();
+  for (;;) {
+    report.detail = detail;
+    if (report.contacts_left_out > 0) {
+      append(std::to_string(report.contacts_left_out) + " contacts about to bounce left out",
+             report.detail);
+    }
+    report.contacts = selection.contacts(false);
+    next_joint_memory_ = joint_memory_;
+    solve_islands(contact_islands(solved, free, report.contacts, selection.allowance(), joined,
+                                  settings_.full_model),
+                  state, report);
+    next = free;
+    apply(solved, next, report);
+    if (selection.apart() == 0) {
+      break;
+    }
+    const BodyPairs violated = selection.put_back(velocities_of(bodies_, next), next);
+    if (violated.empty()) {
+      break;
+    }
+    report.contacts_put_back += static_cast<int>(violated.size());
+    int woken = 0;
+    for (const auto& [a, b] : violated) {
+      woken += sleepers_.wake(a) + sleepers_.wake(b);
+    }
+    report.bodies_woken += woken;
+    if (woken > 0) {
+      return false;
+    }
+  }
+  report.contacts_apart = selection.apart();
+  report.contacts_asleep = selection.asleep();
+  move(state, selection.contacts(true), next);
+  return true;
+}
+
 void TimeStepper::step(State& state, StepReport& report) {
   validate(bodies_, state);
   report = {};
@@ -476,50 +580,47 @@ void TimeStepper::step(State& state, StepReport& report) {
   report.deepest_overlap = deepest_overlap(found_);
   report.seconds.find = watch.lap();
 
-  const State free = with_forces_applied(state);
-  Selection selection(found_, gap_velocities(bodies_, state, found_),
-                      gap_velocities(bodies_, free, found_), settings_);
-  report.contacts_left_out = selection.about_to_bounce();
-  if (report.contacts_left_out > 0) {
-    append(std::to_string(report.contacts_left_out) + " contacts about to bounce left out",
-           report.detail);
+  std::vector<JointRow> all_joined;
+  joint_rows(joints_, state, settings_.step, all_joined);
+  State free = with_forces_applied(state);
+  report.bodies_woken = sleepers_.notice(bodies_, state);
+  while (sleepers_.count() > 0 || report.bodies_woken > 0) {
+    free = with_forces_applied(state);  // of those that woke too
+    const int woken = wake_touched(state, free, all_joined);
+    report.bodies_woken += woken;
+    if (woken == 0) {
+      break;
+    }
   }
-  std::vector<JointRow> joined;
-  joint_rows(joints_, state, settings_.step, joined);
   const Bodies solved = solved_bodies(state, report);
   const std::string detail = report.detail;
 
   State next;
-  for (;;) {
-    report.detail = detail;
-    report.contacts = selection.contacts(false);
-    next_joint_memory_ = joint_memory_;
-    solve_islands(contact_islands(solved, free, report.contacts, selection.allowance(), joined,
-                                  settings_.full_model),
-                  state, report);
-    next = free;
-    apply(solved, next, report);
-    const int violated =
-        selection.apart() > 0 ? selection.put_back(velocities_of(bodies_, next), next) : 0;
-    if (violated == 0) {
-      break;
+  for (bool done = false; !done;) {
+    std::vector<JointRow> joined = all_joined;
+    std::erase_if(joined, [&](const JointRow& row) {
+      return sleepers_.is_asleep(row.body_a) || sleepers_.is_asleep(row.body_b);
+    });
+    Selection selection(found_, gap_velocities(bodies_, state, found_),
+                        gap_velocities(bodies_, free, found_), settings_, bodies_, sleepers_);
+    done = solve_selection(selection, solved, state, free, joined, detail, next, report);
+    if (!done) {  // some woke
+      free = with_forces_applied(state);
     }
-    report.contacts_put_back += violated;
   }
-  report.contacts_apart = selection.apart();
   next_memory_.sort();
   std::swap(memory_, next_memory_);
   std::swap(joint_memory_, next_joint_memory_);
   joints_before_ = report.joints;
   report.seconds.solve = watch.lap();
 
-  move(state, selection.contacts(true), next);
   project(solved, next, report);
   measure_joints(joints_, next, report.joints);
+  settle(next, report);
   report.kinetic_energy = kinetic_energy(bodies_, next);
   report.potential_energy = potential_energy(bodies_, next, settings_.gravity);
   state = std::move(next);
-  report.seconds.move = watch.lap();
+  report.seconds.project = watch.lap();
 }
 
 }  // namespace signorini

@@ -8,6 +8,7 @@
 #include <signorini/core/response/contact_islands.h>
 #include <signorini/core/response/contact_memory.h>
 #include <signorini/core/response/island_threads.h>
+#include <signorini/core/response/sleeping.h>
 #include <signorini/core/response/step_report.h>
 #include <signorini/core/response/velocity_problem.h>
 #include <signorini/lcp/result.h>
@@ -66,6 +67,8 @@ struct TimeStepSettings {
   /// Threads that solve islands, >= 1: the same bits for any number. One where a recorder is told
   /// of the solves, whose order then stays.
   int threads = 1;
+  /// Bodies asleep have no rows, no forces and do not move; the finder still looks at them.
+  SleepSettings sleep = {};
   /// Every contact found has its rows, and all islands are one problem: what the reduced model is
   /// checked against.
   bool full_model = false;
@@ -143,6 +146,10 @@ class TimeStepper {
   /// Drives a joint otherwise from the next step on. @throws std::invalid_argument for a number out
   /// of range and for a motor that validate() refuses; nothing is then changed
   void set_motor(int joint, const JointMotor& motor);
+  [[nodiscard]] bool is_asleep(int body) const { return sleepers_.is_asleep(body); }
+  /// Wakes a body and what sleeps with it.
+  /// @throws std::invalid_argument for a number out of range
+  void wake(int body);
   /// After a change of the finder's own shapes or filters: asks it anew in the next step even if no
   /// body moved.
   void forget_contacts() { found_poses_.clear(); }
@@ -153,6 +160,8 @@ class TimeStepper {
   [[nodiscard]] FrictionModel friction_model() const;
   [[nodiscard]] IslandSettings island_settings() const;
   void find(const State& state);
+  int wake_touched(const State& state, const State& free, const std::vector<JointRow>& joined);
+  void settle(State& state, StepReport& report);
   void solve_islands(const std::vector<ContactIsland>& islands, const State& start,
                      StepReport& report);
   struct IslandAnswer;
@@ -161,6 +170,10 @@ class TimeStepper {
   void apply(const Bodies& solved, State& state, StepReport& report) const;
   void move(const State& start, const ContactSet& contacts, State& state) const;
   void project(const Bodies& solved, State& state, StepReport& report);
+  class Selection;
+  bool solve_selection(Selection& selection, const Bodies& solved, const State& state,
+                       const State& free, const std::vector<JointRow>& joined,
+                       const std::string& detail, State& next, StepReport& report);
 
   /// An island's problem and its solution.
   struct IslandAnswer {
@@ -177,6 +190,7 @@ class TimeStepper {
   BodyPairs joined_;  // of the joints whose bodies do not collide: smaller first, sorted
   std::unique_ptr<lcp::Solver> projection_solver_;
   IslandThreads island_threads_;
+  Sleepers sleepers_;
   std::vector<IslandAnswer> answers_;  // their memory
   ContactSet found_;                   // the contacts of these poses
   std::vector<Pose> found_poses_;
