@@ -1,4 +1,5 @@
 #include <signorini/lcp/auto_solver.h>
+#include <signorini/lcp/symmetric_lcp.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +17,7 @@ constexpr Index kLemkeRows = 1000;            // the same, with larger constants
 constexpr double kMassRatioForSweeps = 1e3;   // above it sweeps stall
 constexpr int kFirstSweeps = 48;
 constexpr int kConeInteriorSteps = 30;  // where nothing slides about ten are enough
+constexpr int kBlockPivotingSets = 50;  // real problems need up to 20; more only where it cycles
 // An interior point of this many rows costs a few milliseconds: sweeps only win where little
 // accuracy is asked.
 constexpr Index kRowsForAccurateSweeps = 5000;
@@ -23,32 +25,6 @@ constexpr double kRoughTolerance = 1e-5;
 constexpr double kCaution = 1.5;  // rates fall as sweeps go on
 // From an iterate worse than this the interior point needs more factorisations than from none.
 constexpr double kWarmEnough = 1e-4;
-
-bool is_symmetric(const Matrix& M) {
-  for (Index j = 0; j < M.cols(); ++j) {
-    for (Index i = 0; i < j; ++i) {
-      if (M(i, j) != M(j, i)) {
-        return false;
-      }
-    }
-  }
-  return true;
-}
-
-bool is_symmetric(const SparseMatrix& M) {
-  for (int j = 0; j < M.outerSize(); ++j) {
-    for (SparseMatrix::InnerIterator it(M, j); it; ++it) {
-      if (it.value() != M.coeff(j, it.row())) {
-        return false;
-      }
-    }
-  }
-  return true;
-}
-
-bool is_symmetric(const FactoredMatrix&) {
-  return true;
-}
 
 /// Largest over smallest mass, by the first degree of freedom of every block; at least 1.
 double mass_ratio(const BlockMass& mass, std::vector<double>& unit, std::vector<double>& column) {
@@ -100,16 +76,10 @@ void AutoSolver::choose(const Problem& problem) {
   chain_.clear();
   sweeps_first_ = false;
   if (!problem.cones.empty()) {
-    if (factored && has_start_) {
-      chain_.push_back({"sticking", "perhaps little slides"});
-    } else if (factored) {
-      chain_.push_back({"cone-interior-point", "perhaps little slides", kConeInteriorSteps});
-    }
-    chain_.push_back({"alart-curnier", "friction cones"});
-    chain_.push_back({"nsgs", "friction cones"});
+    choose_for_cones(problem);
     return;
   }
-  const bool symmetric = std::visit([](const auto& M) { return is_symmetric(M); }, problem.M);
+  const bool symmetric = SymmetricLcp::asymmetry(problem).size <= SymmetricLcp::kMostAsymmetry;
   if (symmetric && n <= kSmall) {
     chain_.push_back({"dantzig", "symmetric and small"});
     chain_.push_back({"structured-lemke", "symmetric and small"});
@@ -120,6 +90,11 @@ void AutoSolver::choose(const Problem& problem) {
         settings_.most_sweeps > 0 && sweeps_may_win &&
         mass_ratio(std::get<FactoredMatrix>(problem.M).mass, unit_, column_) <= kMassRatioForSweeps;
     chain_.push_back({"interior-point", "factored and large"});
+  } else {
+    if (symmetric) {
+      chain_.push_back({"block-pivoting", "symmetric and large", kBlockPivotingSets});
+    }
+    chain_.push_back({"interior-point", symmetric ? "symmetric and large" : "not symmetric"});
   }
   chain_.push_back({"alart-curnier", symmetric ? "symmetric" : "not symmetric"});
   if (symmetric && n > kSmall && n <= kStructuredLemkeRows) {
@@ -129,6 +104,20 @@ void AutoSolver::choose(const Problem& problem) {
     chain_.push_back({"lemke", "a vertex, or a proof that there is none"});
   }
   chain_.push_back({"pgs", "takes everything"});
+}
+
+void AutoSolver::choose_for_cones(const Problem& problem) {
+  const bool factored = std::holds_alternative<FactoredMatrix>(problem.M);
+  const bool associated = problem.friction_law == FrictionLaw::kAssociated;
+  if (factored && has_start_) {
+    chain_.push_back({"sticking", "perhaps little slides"});
+  } else if (associated && (factored || problem.size() > kSmall)) {
+    chain_.push_back({"cone-interior-point", "a convex program"});
+  } else if (factored) {
+    chain_.push_back({"cone-interior-point", "perhaps little slides", kConeInteriorSteps});
+  }
+  chain_.push_back({"alart-curnier", "friction cones"});
+  chain_.push_back({"nsgs", "friction cones"});
 }
 
 Solver& AutoSolver::solver(std::string_view name, int max_iterations, double time_left) {

@@ -120,6 +120,25 @@ TEST(FrictionForms, SlidingAndStickingFollowFromMu) {
   EXPECT_THROW(static_cast<void>(make_pyramid_lcp(scene, 0.5, 5)), std::invalid_argument);
 }
 
+// Six rows a contact: a normal, four sides, the friction bound. A tower has four contacts a box.
+TEST(FrictionForms, AutoSolvesPyramidsOfAThousandRows) {
+  struct Case {
+    const char* family;
+    int size;
+    int rows;
+  };
+  for (const auto& [family, size, rows] : {Case{"tower4", 21, 504}, Case{"tower4", 42, 1008},
+                                           Case{"spheres", 84, 504}, Case{"spheres", 167, 1002}}) {
+    const Problem problem = make_pyramid_lcp(make_family_scene({family, size}), 0.5);
+    ASSERT_EQ(problem.size(), rows) << family;
+    lcp::Result result;
+    lcp::make_solver("auto")->solve(problem, result);
+    EXPECT_TRUE(is_solved(result.status)) << family << " " << to_string(result.status);
+    EXPECT_LE(result.certificate.unit_free_residual, 1e-8);
+    EXPECT_LE(result.certificate.natural_residual, 1e-8);
+  }
+}
+
 TEST(PeerProblems, SizesComeOutAsAskedFor) {
   for (const std::string_view family : family_names()) {
     for (const int n : {64, 256, 1000}) {

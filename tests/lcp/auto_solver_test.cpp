@@ -94,6 +94,51 @@ TEST(AutoSolver, StatisticsAreSumsOverTheAttempts) {
   EXPECT_EQ(result.statistics.iterations, iterations);
 }
 
+/// G G^T + skew K for G of random numbers, n x freedom, and a q that bodies' motion gives.
+Problem given_whole(int n, int freedom, double skew, double noise) {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  Matrix G(n, freedom);
+  for (double& value : G.reshaped()) value = normal(random);
+  Vector v(freedom);
+  for (double& value : v) value = normal(random);
+  Matrix M = G * G.transpose();
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < j; ++i) {
+      const double entry = skew * normal(random);
+      M(i, j) += entry;
+      M(j, i) -= entry;
+      M(i, j) *= 1.0 + noise * normal(random);  // as from a file with few digits
+    }
+  }
+  return lcp(M, G * v);
+}
+
+TEST(AutoSolver, GoesByTheSymmetryOfAMatrixGivenWhole) {
+  const Result symmetric = solve(given_whole(150, 160, 0.0, 0.0));
+  EXPECT_EQ(symmetric.status, Status::kSolved);
+  EXPECT_EQ(symmetric.solver, "auto: block-pivoting");
+  EXPECT_EQ(solve(given_whole(150, 300, 0.0, 1e-4)).solver, "auto: block-pivoting");
+  EXPECT_EQ(solve(given_whole(20, 40, 0.0, 1e-4)).solver, "auto: dantzig");
+  for (const int n : {20, 150}) {
+    const Result skew = solve(given_whole(n, 2 * n, 1.0, 0.0));
+    EXPECT_EQ(skew.status, Status::kSolved);
+    EXPECT_EQ(skew.solver, "auto: interior-point");
+  }
+}
+
+TEST(AutoSolver, TakesLargeAssociatedConesAsTheConvexProgramTheyAre) {
+  Problem problem = given_whole(150, 160, 0.0, 0.0);
+  for (int row = 0; row < 150; row += 3) problem.cones.push_back({row, 3, 0.5});
+  const Result coulomb = solve(problem);
+  EXPECT_EQ(coulomb.status, Status::kSolved);
+  EXPECT_EQ(coulomb.attempts[0].solver, "alart-curnier");
+  problem.friction_law = FrictionLaw::kAssociated;
+  const Result associated = solve(problem);
+  EXPECT_EQ(associated.status, Status::kSolved);
+  EXPECT_EQ(associated.solver, "auto: cone-interior-point");
+}
+
 TEST(AutoSolver, TakesConesFreeRowsBoundsAndCoupledLimits) {
   Problem problem = lcp(2.0 * Matrix::Identity(3, 3), Vector{{-4, 3, 4}});
   problem.cones = {{.normal_row = 0, .dimension = 3, .coefficient = 0.5}};
