@@ -5,10 +5,10 @@
 #include <signorini/core/response/position_projection.h>
 #include <signorini/core/response/set_impact.h>
 #include <signorini/core/response/tangent_rows.h>
-#include <signorini/lcp/certificate.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -63,6 +63,8 @@ IslandReport describe(const ContactIsland& island, const lcp::Problem& problem,
   report.solver = result.solver;
   report.status = result.status;
   report.unit_free_residual = result.certificate.unit_free_residual;
+  report.residual =
+      report.unit_free_residual * (problem.size() > 0 ? problem.q.cwiseAbs().maxCoeff() : 0.0);
   return report;
 }
 
@@ -89,6 +91,16 @@ bool collect(const VelocityProblem& velocity, const ContactSet& contacts,
   return usable;
 }
 
+/// One solver for whatever an island is.
+IslandSettings island_settings(const ContactSolverSettings& settings) {
+  return {.solver = settings.solver,
+          .cone_solver = settings.solver,
+          .joint_solver = settings.solver,
+          .lcp = settings.lcp,
+          .accuracy = std::nullopt,
+          .warm_start = settings.warm_start};
+}
+
 }  // namespace
 
 void ContactSolverSettings::validate() const {
@@ -100,28 +112,12 @@ void ContactSolverSettings::validate() const {
            std::to_string(static_cast<int>(friction_model)));
   }
   lcp.validate();
+  (void)lcp::make_solver(solver, lcp);  // a name that is not known is said now
 }
 
-ContactSolver::ContactSolver(const ContactSolverSettings& settings) : settings_(settings) {
+ContactSolver::ContactSolver(const ContactSolverSettings& settings)
+    : settings_(settings), solver_(island_settings(settings)) {
   settings_.validate();
-  solver_ = lcp::make_solver(settings_.solver, settings_.lcp);
-}
-
-void ContactSolver::solve_island(const VelocityProblem& velocity, const ContactSet& contacts,
-                                 lcp::Result& result) {
-  const lcp::Problem& problem = velocity.problem();
-  result.z = velocity.closed_form();
-  if (result.z.size() > 0) {
-    result.solver = "closed form";
-    result.certificate = lcp::certify(problem, result.z, &result.w);
-    result.status =
-        lcp::judge(result.certificate, settings_.lcp.tolerance, lcp::Status::kNumericalBreakdown);
-    if (lcp::is_solved(result.status)) {
-      return;
-    }
-  }
-  const bool warm = settings_.warm_start && velocity.recall(contacts, memory_, start_) > 0;
-  solver_->solve(problem, result, warm ? &start_ : nullptr);
 }
 
 void ContactSolver::solve(const Bodies& bodies, const ContactSet& contacts,
@@ -152,7 +148,8 @@ void ContactSolver::solve(const Bodies& bodies, const ContactSet& contacts,
       fresh.island_of[i] = static_cast<int>(fresh.islands.size());
     }
     lcp::Result result;
-    solve_island(velocity, members, result);
+    double work = 0.0;
+    solver_.solve(velocity, members, {}, {memory_, {}}, {}, result, work);
     fresh.islands.push_back(describe(island, velocity.problem(), result, settings_.friction_model));
     if (collect(velocity, members, island.members, result, fresh)) {
       velocity.remember(members, result.z, next_memory_);

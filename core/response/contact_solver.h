@@ -3,12 +3,12 @@
 #include <signorini/core/model/body.h>
 #include <signorini/core/model/contact.h>
 #include <signorini/core/response/contact_memory.h>
+#include <signorini/core/response/island_solver.h>
 #include <signorini/core/response/step_report.h>
 #include <signorini/core/response/velocity_problem.h>
 #include <signorini/lcp/result.h>
 #include <signorini/lcp/solver.h>
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -75,14 +75,10 @@ class ContactSolver {
   [[nodiscard]] const ContactSolverSettings& settings() const { return settings_; }
 
  private:
-  void solve_island(const VelocityProblem& velocity, const ContactSet& contacts,
-                    lcp::Result& result);
-
   ContactSolverSettings settings_;
-  std::unique_ptr<lcp::Solver> solver_;
+  IslandSolver solver_;
   ContactMemory memory_;
   ContactMemory next_memory_;
-  lcp::Vector start_;
 };
 
 /// The allowance of every contact for a step of h seconds (h > 0), m/s: gap/h, so that a gap may
