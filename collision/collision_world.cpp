@@ -79,6 +79,14 @@ bool CollisionWorld::may_touch(int collider_a, int collider_b) const {
          may_collide(a.filter, b.filter) && !ignored_.contains(a.body, b.body);
 }
 
+void CollisionWorld::keep_at_most(int contacts_of_a_patch) {
+  if (contacts_of_a_patch != 0 && contacts_of_a_patch < 3) {
+    throw std::invalid_argument("keep_at_most: must be 0 (all) or >= 3, got " +
+                                std::to_string(contacts_of_a_patch));
+  }
+  most_of_a_patch_ = contacts_of_a_patch;
+}
+
 void CollisionWorld::find(const State& state, double margin, ContactSet& contacts) {
   check_finder_input("state", state.size(), is_dynamic_.size(), "margin", margin);
   for (std::size_t i = 0; i < state.size(); ++i) {
@@ -99,12 +107,19 @@ void CollisionWorld::find(const State& state, double margin, ContactSet& contact
   broad_phase_.find(bounds_, is_immovable_, pairs_);
 
   contacts.clear();
+  loss_ = {};
   for (const auto& [a, b] : pairs_) {
     if (!may_touch(a, b)) {
       continue;
     }
     find_intersection(colliders_[a].shape, poses_[a], colliders_[b].shape, poses_[b], margin,
                       found_);
+    if (most_of_a_patch_ != 0) {
+      const ReductionLoss loss = reduce_contacts(found_, most_of_a_patch_);
+      loss_.points += loss.points;
+      loss_.area_before += loss.area_before;
+      loss_.area_after += loss.area_after;
+    }
     for (Contact& contact : found_) {
       contact.body_a = colliders_[a].body;
       contact.body_b = colliders_[b].body;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <signorini/collision/broad_phase.h>
+#include <signorini/collision/contact_reduction.h>
 #include <signorini/collision/pair_filter.h>
 #include <signorini/collision/shape.h>
 #include <signorini/core/model/contact_finder.h>
@@ -37,6 +38,13 @@ class CollisionWorld final : public ContactFinder {
   [[nodiscard]] std::optional<FirstContact> first_contact(std::span<const Motion* const> motions,
                                                           double duration) override;
 
+  /// From now on find() keeps at most this many contacts of a patch, by reduce_contacts(); 0 (the
+  /// default): all, which the solvers do not mind.
+  /// @throws std::invalid_argument naming the value: 0 or >= 3
+  void keep_at_most(int contacts_of_a_patch);
+  /// What the last find() left out; all 0 while every contact is kept.
+  [[nodiscard]] const ReductionLoss& reduction_loss() const { return loss_; }
+
   [[nodiscard]] const std::vector<Collider>& colliders() const { return colliders_; }
 
  private:
@@ -47,6 +55,8 @@ class CollisionWorld final : public ContactFinder {
   PairingRule rule_;
   IgnoredPairs ignored_;
   std::vector<std::uint8_t> is_immovable_;  ///< by collider
+  int most_of_a_patch_ = 0;                 ///< 0: all
+  ReductionLoss loss_;
 
   BroadPhase broad_phase_;  // from here on workspace
   std::vector<Pose> poses_;

@@ -27,6 +27,11 @@ struct MovingShape {
 /// level by more than eps. A dip by less than eps/2 (grazing) is no contact, one by more than eps
 /// is always found, one in between may be either.
 ///
+/// From an overlapping start all this holds with the largest d at the moments that were looked at
+/// in the place of the largest d so far: overlap that shrinks and grows again between two of them
+/// may pass. What is certain is that d falls nowhere before the returned time more than eps below
+/// what it was at the start.
+///
 /// Method: conservative advancement with two certificates that an interval [t0, t1] is free. One
 /// from the speed bound L: d >= (d(t0) + d(t1) - L (t1 - t0)) / 2. One along a fixed direction n
 /// (the contact normal at either end) in which the shapes' separation is s_n <= d:

@@ -53,8 +53,8 @@ Vec3 point_of(const Stratum& piece, const Vec3& outward) {
   return piece.is_free() ? piece.point(outward) : piece.anchor;
 }
 
-/// Newton on the circle of a line for a free piece of the other shape; nothing if s has no maximum
-/// on it near n.
+/// Newton on the circle of a line for a free piece of the other shape; nothing if n is along the
+/// axis.
 std::optional<Vec3> on_circle(const Stratum& a, const Stratum& b, const Circle& circle,
                               const Vec3& start) {
   const double c = std::sqrt((1.0 - circle.slope) * (1.0 + circle.slope));
@@ -77,7 +77,7 @@ std::optional<Vec3> on_circle(const Stratum& a, const Stratum& b, const Circle& 
     const double slope = c * W.dot(t);
     const double bend = c * W.dot(u) + c * c * curved;
     if (!(bend > 0.0)) {
-      return std::nullopt;
+      break;  // no maximum here, or s is the same all around (one axis): any n on the circle counts
     }
     const double step = std::clamp(slope / bend, -0.5, 0.5);
     u = (std::cos(step) * u + std::sin(step) * t).normalized();

@@ -1,8 +1,10 @@
 #include <signorini/collision/contact_time.h>
+#include <signorini/collision/hull.h>
 #include <signorini/collision/pair_query.h>
 
 #include "random_pairs.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
@@ -92,6 +94,40 @@ TEST(ContactTime, BulletDoesNotTunnelThroughAThinPlate) {
   }
   const auto oblique = straight({-0.8, 0.1, 0.4}, {1000.0, 0.0, -500.0}, {0, 0, 300.0});
   EXPECT_TRUE(contact_time(Box{Vec3::Constant(0.005)}, oblique, plate, kStill, 0.01).has_value());
+}
+
+ConvexHull wedge(double size) {
+  return make_hull({{-size, -size, -size}, {size, -size, -size}, {0, size, -size}, {0, 0, size}},
+                   {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}});
+}
+
+TEST(ContactTime, BulletsOfEveryShapeStrikePlatesOfEveryShape) {
+  const double r = 0.005;
+  const Shape bullets[] = {Capsule{r, r}, Cylinder{r, r}, Cone{r, r}, Ellipsoid{{r, 0.5 * r, r}},
+                           wedge(r)};
+  const double thin = 0.0005;
+  const Shape plates[] = {
+      Box{{0.5, 0.5, thin}}, Cylinder{0.5, thin}, Ellipsoid{{0.5, 0.5, thin}},
+      make_hull({{-1, -1, -thin},
+                 {1, -1, -thin},
+                 {0, 1, -thin},
+                 {-1, -1, thin},
+                 {1, -1, thin},
+                 {0, 1, thin}},
+                {{0, 2, 1}, {3, 4, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}})};
+  for (const Shape& bullet : bullets) {
+    for (const Shape& plate : plates) {
+      for (const double speed : {1.0, 1e3, 1e6}) {
+        const auto flight = straight({0.0, 0.0, 0.8}, {0.0, 0.0, -speed}, {0.0, 0.0, 100.0});
+        const auto time = contact_time(bullet, flight, plate, kStill, 1.0);
+        ASSERT_TRUE(time.has_value()) << bullet.index() << " on " << plate.index();
+        const double low =
+            -support(bullet, {}, -Vec3::UnitZ());  // the lowest point lies on the axis
+        EXPECT_NEAR(*time * speed, 0.8 + low - thin, 1e-9)
+            << bullet.index() << " on " << plate.index();
+      }
+    }
+  }
 }
 
 TEST(ContactTime, SpinningRodStrikesAPostWhenItsAngleSays) {
@@ -256,6 +292,101 @@ TEST(ContactTime, AgreesWithDenseSamplingOnRandomThrows) {
   std::printf("    %d throws, %d contacts; %.1f poses a throw, at most %d\n", kThrows, hits,
               1.0 * evaluated / kThrows, most);
   EXPECT_GT(hits, kThrows / 4);
+}
+
+struct Throw {
+  testing::PlacedPair pair;
+  ConstantVelocityMotion a;
+  ConstantVelocityMotion b;
+};
+
+/// Two shapes of which one is none of sphere, box and half-space; `apart`: their distance at the
+/// start over the smaller size.
+Throw random_throw(Random& random, int number, double apart) {
+  constexpr ShapeKind kNew[] = {ShapeKind::kCapsule, ShapeKind::kCylinder, ShapeKind::kCone,
+                                ShapeKind::kEllipsoid, ShapeKind::kHull};
+  const auto other = static_cast<ShapeKind>(number / 5 % 8);
+  testing::PlacedPair pair =
+      testing::random_pair(random, kNew[number % 5], other, testing::Placement::kAnywhere);
+  std::vector<Contact> contacts;
+  find_intersection(pair.a, pair.pose_a, pair.b, pair.pose_b, 1e9, contacts);
+  const Contact& nearest =
+      *std::min_element(contacts.begin(), contacts.end(),
+                        [](const Contact& p, const Contact& q) { return p.gap < q.gap; });
+  const double size = pair.size;
+  pair.pose_a.position += (apart * size - nearest.gap) * nearest.normal;
+  const auto vector = [&](double most) {
+    return Vec3(testing::uniform(random, 0.0, most) * testing::random_direction(random));
+  };
+  const bool on_plane = other == ShapeKind::kHalfSpace;
+  const Vec3 velocity = vector(3.0 * size) - 2.0 * size * nearest.normal;
+  return {pair,
+          {pair.pose_a, velocity, vector(10.0)},
+          {pair.pose_b, on_plane ? Vec3(Vec3::Zero()) : vector(size),
+           on_plane ? Vec3(Vec3::Zero()) : vector(10.0)}};
+}
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(NDEBUG)
+constexpr int kNewThrows = 40;
+#else
+constexpr int kNewThrows = 100;
+#endif
+
+// The gap is sampled up to the time, and the time compared with a bisection of the gap.
+TEST(ContactTime, OfTheOtherShapesAgreesWithBisectionOnRandomThrows) {
+  Random random(20261125);
+  int hits = 0;
+  double worst = 0.0;
+  for (int k = 0; k < kNewThrows; ++k) {
+    const Throw thrown = random_throw(random, k, testing::uniform(random, 0.01, 2.0));
+    const auto& [pair, a, b] = thrown;
+    const auto gap = [&](double t) { return gap_at(pair.a, a, pair.b, b, t); };
+    const auto time = contact_time(pair.a, a, pair.b, b, 1.0);
+    const double tolerance = 1e-8 * pair.size + 64.0 * pair.rounding;
+    const double until = time.value_or(1.0);
+    for (int i = 0; i <= 60; ++i) {
+      ASSERT_GE(gap(until * i / 60.0), -tolerance) << describe(pair) << "missed";
+    }
+    if (!time) {
+      continue;
+    }
+    ++hits;
+    EXPECT_LE(std::abs(gap(*time)), tolerance) << describe(pair);
+    const double h = 1e-5;
+    const double approach = (gap(*time - h) - gap(*time + h)) / (2.0 * h);
+    if (*time < h || !(approach > 0.05 * pair.size) || !(gap(*time + h) < -tolerance)) {
+      continue;  // grazing
+    }
+    double low = *time - h;
+    double high = *time + h;
+    while (high - low > 1e-15) {
+      const double middle = 0.5 * (low + high);
+      if (!(middle > low && middle < high)) {
+        break;
+      }
+      (gap(middle) > 0.0 ? low : high) = middle;
+    }
+    const double error = std::abs(low - *time);
+    worst = std::max(worst, error);
+    EXPECT_LE(error, 1e-9 + 2.0 * tolerance / approach) << describe(pair);
+  }
+  std::printf("    %d throws, %d contacts, time off by at most %.1e s\n", kNewThrows, hits, worst);
+  EXPECT_GT(hits, kNewThrows / 4);
+}
+
+TEST(ContactTime, FromAnOverlapNothingBecomesDeeperUnnoticed) {
+  Random random(7);
+  for (int k = 0; k < kNewThrows / 4; ++k) {
+    const Throw thrown = random_throw(random, k, -testing::uniform(random, 1e-3, 0.5));
+    const auto& [pair, a, b] = thrown;
+    const double start = gap_at(pair.a, a, pair.b, b, 0.0);
+    const double until = contact_time(pair.a, a, pair.b, b, 1.0).value_or(1.0);
+    for (int i = 0; i <= 100; ++i) {
+      const double d = gap_at(pair.a, a, pair.b, b, until * i / 100.0);
+      ASSERT_GE(d, std::min(0.0, start) - 1e-8 * pair.size - 64.0 * pair.rounding)
+          << describe(pair);
+    }
+  }
 }
 
 TEST(ContactTime, BadInputIsRefused) {

@@ -1,7 +1,10 @@
 #include "collision_bytes.h"
 
 #include <signorini/collision/contact_time.h>
+#include <signorini/collision/hull.h>
 #include <signorini/collision/pair_query.h>
+
+#include "tests/collision/random_pairs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +15,7 @@
 #include <optional>
 #include <set>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace signorini::collision::testing {
@@ -58,16 +62,36 @@ class Bytes {
   std::size_t at_ = 0;
 };
 
+/// A tetrahedron or a wedge, stretched.
+ConvexHull hull(const Vec3& size, bool is_wedge) {
+  std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  std::vector<std::vector<int>> faces{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+  if (is_wedge) {
+    points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
+    faces = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}};
+  }
+  for (Vec3& point : points) {
+    point = size.cwiseProduct(point);
+  }
+  return make_hull(std::move(points), std::move(faces));
+}
+
 Shape shape(Bytes& bytes) {
   const double a = bytes.length();
   const double b = bytes.length();
   const double c = bytes.length();
-  switch (bytes.byte() % 5) {
+  switch (bytes.byte() % 11) {
     case 0: return Sphere{a};
     case 1: return Box{Vec3(a, b, c)};
     case 2: return Box{Vec3::Constant(a)};
     case 3: return HalfSpace{};
-    default: return Sphere{bytes.byte() == 0 ? bytes.raw() : b};
+    case 4: return Sphere{bytes.byte() == 0 ? bytes.raw() : b};
+    case 5: return Capsule{a, b};
+    case 6: return Cylinder{a, b};
+    case 7: return Cone{a, b};
+    case 8: return Ellipsoid{Vec3(a, b, c)};
+    case 9: return hull(Vec3(a, b, c), false);
+    default: return hull(Vec3(a, b, c), true);
   }
 }
 
@@ -99,8 +123,8 @@ struct Case {
 };
 
 [[noreturn]] void broken(const char* promise, const Case& c, double value, double bound) {
-  std::fprintf(stderr, "broken: %s: %.17g against %.17g (shapes %zu and %zu)\n", promise, value,
-               bound, c.a.index(), c.b.index());
+  std::fprintf(stderr, "broken: %s: %.17g against %.17g\n%smargin %.17g\n", promise, value, bound,
+               describe({c.a, c.pose_a, c.b, c.pose_b}).c_str(), c.margin);
   std::abort();
 }
 
@@ -178,8 +202,10 @@ void judge_contact_time(const Case& c, const Vec3& v, const Vec3& w) {
 
 void judge_bytes(const std::uint8_t* data, std::size_t size) {
   Bytes bytes(data, size);
-  Case c{shape(bytes), shape(bytes), {}, {}};
+  Case c;
   try {
+    c.a = shape(bytes);
+    c.b = shape(bytes);
     validate(c.a);
     validate(c.b);
   } catch (const std::invalid_argument&) {
