@@ -58,6 +58,10 @@ BulletShape bullet_shape(const collision::Shape& shape, bool with_faces) {
     return {nullptr,
             std::make_unique<btCapsuleShapeZ>(capsule->radius, 2.0 * capsule->half_length)};
   }
+  if (const auto* cylinder = std::get_if<collision::Cylinder>(&shape)) {
+    const double r = cylinder->radius;
+    return {nullptr, std::make_unique<btCylinderShapeZ>(btVector3(r, r, cylinder->half_length))};
+  }
   if (const auto* hull = std::get_if<collision::ConvexHull>(&shape)) {
     return {nullptr, bullet_hull(*hull->data, with_faces)};
   }

@@ -7,6 +7,7 @@
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/capsule.h>
 #include <fcl/geometry/shape/convex.h>
+#include <fcl/geometry/shape/cylinder.h>
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/math/bv/OBBRSS.h>
 #include <fcl/narrowphase/collision.h>
@@ -48,6 +49,9 @@ std::shared_ptr<fcl::CollisionGeometry<double>> fcl_shape(const collision::Shape
   }
   if (const auto* capsule = std::get_if<collision::Capsule>(&shape)) {
     return std::make_shared<fcl::Capsule<double>>(capsule->radius, 2.0 * capsule->half_length);
+  }
+  if (const auto* cylinder = std::get_if<collision::Cylinder>(&shape)) {
+    return std::make_shared<fcl::Cylinder<double>>(cylinder->radius, 2.0 * cylinder->half_length);
   }
   if (const auto* hull = std::get_if<collision::ConvexHull>(&shape)) {
     return fcl_hull(*hull->data);

@@ -1,5 +1,6 @@
 #include "bench/narrow_phase_study.h"
 
+#include <signorini/collision/contact_reduction.h>
 #include <signorini/collision/hull.h>
 #include <signorini/collision/mesh.h>
 #include <signorini/collision/pair_query.h>
@@ -28,16 +29,23 @@ using collision::testing::uniform;
 
 class OurNarrowPhase final : public NarrowPhasePeer {
  public:
-  OurNarrowPhase(const Shape& a, const Shape& b) : a_(a), b_(b) {}
-  [[nodiscard]] std::string name() const override { return "signorini"; }
+  /// @param most of a patch; 0: all
+  OurNarrowPhase(const Shape& a, const Shape& b, int most) : a_(a), b_(b), most_(most) {}
+  [[nodiscard]] std::string name() const override {
+    return most_ == 0 ? "signorini" : fmt::format("signorini, {}", most_);
+  }
   void query(const Pose& a, const Pose& b) override {
     collision::find_intersection(a_, a, b_, b, 0.0, found_);
+    if (most_ != 0) {
+      (void)collision::reduce_contacts(found_, most_);
+    }
   }
   void read(std::vector<Contact>& contacts) override { contacts = found_; }
 
  private:
   const Shape& a_;
   const Shape& b_;
+  int most_;
   std::vector<Contact> found_;
 };
 
@@ -168,7 +176,7 @@ bool is_valid(const Pair& pair, const PosePair& poses, const Contact& contact, d
 
 NarrowPhaseRow measure(NarrowPhasePeer& peer, const Pair& pair, const std::vector<PosePair>& poses,
                        int repeats) {
-  NarrowPhaseRow row{pair.name, peer.name(), 0.0, 0.0, 0.0};
+  NarrowPhaseRow row{pair.name, peer.name(), 0.0, 0.0, 0.0, 0.0};
   const auto count = static_cast<double>(poses.size());
   std::vector<Contact> contacts;
   for (const PosePair& pose : poses) {
@@ -179,6 +187,8 @@ NarrowPhaseRow measure(NarrowPhasePeer& peer, const Pair& pair, const std::vecto
     for (const Contact& contact : contacts) {
       row.valid += (is_valid(pair, pose, contact, d) ? 1.0 : 0.0) / count;
     }
+    constexpr int kAll = 1000;
+    row.area += collision::reduce_contacts(contacts, kAll).area_before / count;
   }
   double least = std::numeric_limits<double>::infinity();
   for (int k = 0; k < repeats; ++k) {
@@ -195,10 +205,10 @@ NarrowPhaseRow measure(NarrowPhasePeer& peer, const Pair& pair, const std::vecto
 }  // namespace
 
 std::string NarrowPhaseReport::to_csv() const {
-  std::string csv = "pair,narrow phase,ns a query,points,valid\n";
+  std::string csv = "pair,narrow phase,ns a query,points,valid,area\n";
   for (const NarrowPhaseRow& row : rows) {
-    csv += fmt::format("{},{},{:.1f},{:.3f},{:.3f}\n", row.pair, row.name, row.nanoseconds,
-                       row.points, row.valid);
+    csv += fmt::format("{},{},{:.1f},{:.3f},{:.3f},{:.5f}\n", row.pair, row.name, row.nanoseconds,
+                       row.points, row.valid, row.area);
   }
   return csv;
 }
@@ -212,12 +222,14 @@ NarrowPhaseReport run_narrow_phase_study(const NarrowPhaseOptions& options, std:
   const Pair pairs[] = {
       {"box-box", Box{Vec3(0.5, 0.4, 0.3)}, brick},
       {"sphere-box", Sphere{0.5}, brick},
+      {"box-cylinder", brick, collision::Cylinder{0.4, 0.5}},
       {"box-hull", brick, rock, Quat::Identity(), turn_face(rock, up)},
       {"hull-hull", stone, rock, turn_face(stone, -up), turn_face(rock, up)},
       {"capsule-mesh", Capsule{0.2, 0.4}, ground(), lying},
   };
   NarrowPhaseReport report;
-  out << fmt::format("{:<14}{:<16}{:>10}{:>10}{:>10}\n", "pair", "", "ns", "points", "valid");
+  out << fmt::format("{:<14}{:<16}{:>10}{:>10}{:>10}{:>10}\n", "pair", "", "ns", "points", "valid",
+                     "area");
   for (const Pair& pair : pairs) {
     Random random(options.seed);
     std::vector<PosePair> poses;
@@ -226,7 +238,8 @@ NarrowPhaseReport run_narrow_phase_study(const NarrowPhaseOptions& options, std:
       poses.push_back(touching(pair, k % 2 == 0, random));
     }
     NarrowPhasePeers peers;
-    peers.push_back(std::make_unique<OurNarrowPhase>(pair.a, pair.b));
+    peers.push_back(std::make_unique<OurNarrowPhase>(pair.a, pair.b, 0));
+    peers.push_back(std::make_unique<OurNarrowPhase>(pair.a, pair.b, 4));
 #ifdef SIGNORINI_PEER_BULLET
     add_bullet_narrow_phase(pair.a, pair.b, peers);
 #endif
@@ -235,8 +248,8 @@ NarrowPhaseReport run_narrow_phase_study(const NarrowPhaseOptions& options, std:
 #endif
     for (const auto& peer : peers) {
       const NarrowPhaseRow row = measure(*peer, pair, poses, options.repeats);
-      out << fmt::format("{:<14}{:<16}{:>10.0f}{:>10.2f}{:>10.2f}\n", row.pair, row.name,
-                         row.nanoseconds, row.points, row.valid);
+      out << fmt::format("{:<14}{:<16}{:>10.0f}{:>10.2f}{:>10.2f}{:>10.4f}\n", row.pair, row.name,
+                         row.nanoseconds, row.points, row.valid, row.area);
       out.flush();
       report.rows.push_back(row);
     }

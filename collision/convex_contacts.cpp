@@ -343,7 +343,13 @@ void find_contacts(const Convex& a, const Convex& b, double margin,
   }
   Separation& found = memory().separation;
   separate(a, b, found);
-  if ((found.distance > margin && axes != AxesSay::kTouching) ||
+  find_contacts(a, b, found, axes == AxesSay::kTouching ? std::max(margin, found.distance) : margin,
+                contacts);
+}
+
+void find_contacts(const Convex& a, const Convex& b, const Separation& found, double margin,
+                   std::vector<Contact>& contacts) {
+  if (found.distance > margin ||
       (found.face && find_all_on_face(a, b, *found.face, found.distance, margin, contacts))) {
     return;
   }

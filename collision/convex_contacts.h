@@ -19,6 +19,10 @@ namespace signorini::collision {
 /// @param contacts are added to
 void find_contacts(const Convex& a, const Convex& b, double margin, std::vector<Contact>& contacts);
 
+/// The same from what separate() said. @param found by separate(a, b)
+void find_contacts(const Convex& a, const Convex& b, const Separation& found, double margin,
+                   std::vector<Contact>& contacts);
+
 /// The contacts of a given face of A or B alone, as above.
 void find_contacts_on_face(const Convex& a, const Convex& b, const FacingFace& face, double margin,
                            std::vector<Contact>& contacts);

@@ -157,17 +157,41 @@ bool belongs(const PlacedMesh& mesh, int t, const Stratum& piece, const Vec3& N)
   });
 }
 
-TriangleMeeting meet(const Convex& a, const PlacedMesh& mesh, int t, const TriangleCore& triangle) {
+/// Are A and the triangle further apart than `reach` along one of the directions that lie in its
+/// plane across its edges? (Then they are further apart.)
+bool is_beside(const Convex& a, const TriangleCore& triangle, double reach) {
+  for (int k = 0; k < 3; ++k) {
+    const Vec3& from = triangle.corner(k);
+    const Vec3 out = (triangle.corner((k + 1) % 3) - from).cross(triangle.normal()).normalized();
+    if (out.dot(a.support(-out) - from) - a.rounding() > reach) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// @param reach what is further apart than this may be said to be at +infinity
+/// @param found where not at +infinity and not by the face alone: what separate() says
+TriangleMeeting meet(const Convex& a, const PlacedMesh& mesh, int t, const TriangleCore& triangle,
+                     double reach, Separation& found) {
   TriangleMeeting meeting;
   meeting.face = least_deep_face(a, triangle);
+  if (meeting.face.separation > reach || is_beside(a, triangle, reach)) {
+    return meeting;
+  }
   // The difference of a point or segment and a triangle may have no volume: only where they are
   // apart is there a direction to find.
   const double touch = kTouch * std::min(a.size(), triangle.size());
-  if (a.rounding() > 0.0 && gjk(a, triangle, 1e-8, 0.0).lower <= touch) {
-    meeting.distance = meeting.face.separation;
-    return meeting;
+  if (a.rounding() > 0.0) {
+    const double cores = gjk(a, triangle, 1e-8, 0.0).lower;
+    if (cores <= touch) {
+      meeting.distance = meeting.face.separation;
+      return meeting;
+    }
+    if (cores * (1.0 - 1e-8) - a.rounding() > reach) {
+      return meeting;
+    }
   }
-  thread_local Separation found;
   separate(a, triangle, found);
   meeting.distance = found.distance;
   meeting.counts = std::any_of(found.meetings.begin(), found.meetings.end(),
@@ -256,8 +280,9 @@ void add_last_word(const Convex& a, const TriangleCore& triangle, double margin,
 }  // namespace
 
 double mesh_distance(const Convex& a, const Bounds& near, const PlacedMesh& b) {
+  Separation found;
   const double least = b.data.tree.least(widened(near, 0.0, b.data), kInfinity, [&](int t) {
-    return meet(a, b, t, core_of(b, t)).distance;
+    return meet(a, b, t, core_of(b, t), kInfinity, found).distance;
   });
   if (least > 0.0) {
     return least;
@@ -273,8 +298,10 @@ double mesh_distance(const Convex& a, const Bounds& near, const PlacedMesh& b) {
 
 bool mesh_test(const Convex& a, const Bounds& near, const PlacedMesh& b) {
   const std::vector<int> triangles = triangles_near(widened(near, 0.0, b.data), b.data);
-  return std::any_of(triangles.begin(), triangles.end(),
-                     [&](int t) { return meet(a, b, t, core_of(b, t)).distance <= 0.0; });
+  Separation found;
+  return std::any_of(triangles.begin(), triangles.end(), [&](int t) {
+    return meet(a, b, t, core_of(b, t), 0.0, found).distance <= 0.0;
+  });
 }
 
 void find_mesh_contacts(const Convex& a, const Bounds& near, const PlacedMesh& b, double margin,
@@ -282,16 +309,17 @@ void find_mesh_contacts(const Convex& a, const Bounds& near, const PlacedMesh& b
   double least = kInfinity;
   int nearest = -1;
   std::vector<Contact> of_one;
+  Separation apart;
   for (const int t : triangles_near(widened(near, margin, b.data), b.data)) {
     const TriangleCore triangle = core_of(b, t);
-    const TriangleMeeting meeting = meet(a, b, t, triangle);
+    const TriangleMeeting meeting = meet(a, b, t, triangle, margin, apart);
     if (meeting.distance < least) {
       least = meeting.distance;
       nearest = t;
     }
     of_one.clear();
     if (meeting.counts && meeting.distance <= margin) {
-      find_contacts(a, triangle, margin, of_one);
+      find_contacts(a, triangle, apart, margin, of_one);
     } else if (!meeting.counts && meeting.distance <= margin) {
       find_contacts_on_face(a, triangle, meeting.face, margin, of_one);
     }

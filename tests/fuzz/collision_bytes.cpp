@@ -120,6 +120,7 @@ struct Case {
   double margin = 0.0;
   double size = 0.0;      ///< of both, m
   double rounding = 0.0;  ///< of a gap, m
+  double search = 0.0;    ///< of a distance that is found by a search: 1e-8 of the smaller size, m
 };
 
 [[noreturn]] void broken(const char* promise, const Case& c, double value, double bound) {
@@ -168,7 +169,7 @@ void judge_queries(const Case& c) {
             std::abs(distance) <= c.rounding,
         "test = (distance <= 0)", c, distance, 0.0);
   const double exchanged = signed_distance(c.b, c.pose_b, c.a, c.pose_a);
-  judge(exchanged == distance || std::abs(exchanged - distance) <= c.rounding,
+  judge(exchanged == distance || std::abs(exchanged - distance) <= c.rounding + c.search,
         "exchange keeps the distance", c, exchanged, distance);
   std::vector<Contact> contacts;
   find_intersection(c.a, c.pose_a, c.b, c.pose_b, c.margin, contacts);
@@ -212,6 +213,7 @@ void judge_bytes(const std::uint8_t* data, std::size_t size) {
     return;
   }
   const double reach = extent(c.a) + extent(c.b);
+  c.search = 1e-8 * std::min(extent(c.a), extent(c.b));
   const double far = bytes.byte() % 4 == 0 ? std::abs(1e6 * bytes.unit()) : 0.0;
   c.pose_b = pose(bytes, reach);
   c.pose_b.position += far * Vec3::Ones();
