@@ -21,6 +21,8 @@ constexpr BuiltinScene kScenes[] = {
     {"box-landing-flat", check_box_landing},
     {"slope-stick", check_slope},
     {"slope-slide", check_slope},
+    {"slope-stick-by-a-hair", check_slope},
+    {"slope-slide-by-a-hair", check_slope},
     {"stack-of-5", check_stack},
     {"newtons-cradle", check_newtons_cradle},
     {"ball-between-walls", check_ball_between_walls},
@@ -29,7 +31,9 @@ constexpr BuiltinScene kScenes[] = {
     {"mass-ratio-1000", check_mass_ratio},
     {"rolling-sphere", check_rolling},
     {"rolling-cylinder", check_rolling},
+    {"rolling-capsule", check_rolling},
     {"slipping-capsule", check_rolling},
+    {"thrown-cylinder", check_rolling},
     {"sliding-headings", check_headings},
     {"resting-shapes", check_resting_shapes},
     {"landing-shapes", check_landing_shapes},
@@ -38,6 +42,7 @@ constexpr BuiltinScene kScenes[] = {
     {"dzhanibekov", check_dzhanibekov},
     {"elastic-balls", check_elastic_grid},
     {"card-house", check_resting_shapes},
+    {"three-bricks", check_resting_shapes},
     {"arch", check_resting_shapes},
 };
 

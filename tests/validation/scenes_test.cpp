@@ -329,7 +329,9 @@ INSTANTIATE_TEST_SUITE_P(BuiltIn, QuickScenes,
                                          "ball-between-tilted-walls", "rod-on-two-supports",
                                          "rolling-sphere", "rolling-cylinder", "slipping-capsule",
                                          "sliding-headings", "landing-shapes", "box-on-an-edge",
-                                         "dzhanibekov", "card-house", "elastic-balls"),
+                                         "dzhanibekov", "card-house", "elastic-balls",
+                                         "rolling-capsule", "thrown-cylinder",
+                                         "slope-stick-by-a-hair", "slope-slide-by-a-hair"),
                          [](const auto& scene) {
                            std::string name = scene.param;
                            for (char& c : name) c = std::isalnum(c) ? c : '_';
