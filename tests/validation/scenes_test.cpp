@@ -267,7 +267,8 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(BuiltinScenes, ErrorsThatScenesNameAreChecksOfBothEngines) {
   int named = 0;
   for (const char* name : {"free-flight", "ball-drop-e0", "ball-drop-e0.5", "wedge",
-                           "newtons-cradle", "rod-on-two-supports", "box-landing-flat"}) {
+                           "newtons-cradle", "rod-on-two-supports", "box-landing-flat",
+                           "rolling-sphere", "box-on-an-edge", "elastic-balls"}) {
     const BuiltinScene& scene = *find_builtin_scene(name);
     const std::string error = load_builtin_scene(scene).error;
     ASSERT_FALSE(error.empty()) << name;
@@ -280,7 +281,7 @@ TEST(BuiltinScenes, ErrorsThatScenesNameAreChecksOfBothEngines) {
       });
     }
   }
-  EXPECT_EQ(named, 2 * 7);
+  EXPECT_EQ(named, 2 * 10);
 }
 
 TEST(Trade, EveryWayHasAnErrorAndTheQuarterStepErrsLess) {
