@@ -145,15 +145,15 @@ class TimeStepper::Selection {
       allowance_[i] = bounces ? e * d_dot[i] : may_close(contact.gap) / h;
       const bool a_sleeps = sleepers.is_asleep(contact.body_a);
       const bool b_sleeps = sleepers.is_asleep(contact.body_b);
+      const bool one_sleeps = a_sleeps || b_sleeps;  // does not act, or it would have woken it
+      const bool keeps_apart = !settings.full_model && contact.gap > kToleratedOverlap &&
+                               d_dot_free[i] + allowance_[i] > 0.0;
       if ((a_sleeps && (b_sleeps || !bodies[contact.body_b].is_dynamic())) ||
           (b_sleeps && !bodies[contact.body_a].is_dynamic())) {
         fate_[i] = Fate::kAsleep;
-      } else if (a_sleeps || b_sleeps) {  // does not act, or it would have woken it
-        fate_[i] = Fate::kApart;
-      } else if (e > 0.0 && !touching && fast && would_be_caught) {
+      } else if (!one_sleeps && e > 0.0 && !touching && fast && would_be_caught) {
         fate_[i] = Fate::kAboutToBounce;
-      } else if (!settings.full_model && contact.gap > kToleratedOverlap &&
-                 d_dot_free[i] + allowance_[i] > 0.0) {
+      } else if (one_sleeps || keeps_apart) {
         fate_[i] = Fate::kApart;
       }
     }
