@@ -98,7 +98,7 @@ std::vector<IslandSolver::Try> IslandSolver::choose(const lcp::Problem& problem,
     const bool rough = residual >= kRough;
     if (is_warm) {
       chain.push_back({"sticking", "perhaps little slides", rough ? 2 : 6});
-    } else if (!rough) {
+    } else {
       chain.push_back({"cone-interior-point", "perhaps little slides", 30});
     }
     chain.push_back({"nsgs", "little accuracy is asked", rough ? 50 : 200});

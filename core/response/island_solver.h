@@ -37,11 +37,11 @@ struct StepMemory {
 /// dial (accuracy set) an island is tried in this order, until its residual is met; each starts
 /// from the best iterate so far:
 ///
-/// | residual, m/s | friction, warm | friction, cold | no friction |
-/// |---|---|---|---|
-/// | >= 3e-3 (preview) | sticking (2 sets), nsgs (50 sweeps) | nsgs (50) | auto |
-/// | >= 3e-6 (game) | sticking (6), nsgs (200), auto | cone-interior-point (30), nsgs (200), auto |
-/// auto | | below | auto | auto | auto |
+/// - residual >= 3e-3 (preview), friction: sticking (2 sets) where warm, else cone-interior-point
+///   (30 steps); nsgs (50 sweeps)
+/// - residual >= 3e-6 (game), friction: sticking (6 sets) or cone-interior-point (30); nsgs (200);
+///   auto
+/// - else, and without friction: auto
 ///
 /// With a budget auto, which knows none, gives way to interior-point (no friction), alart-curnier
 /// and nsgs.
