@@ -79,8 +79,8 @@ Nearest nearest_points(const Segment& a, const Segment& b) {
 }
 
 Vec3 normal_of(const Segment& a, const Segment& b, const Nearest& nearest) {
-  if (!nearest.between.isZero(0.0)) {
-    return nearest.between.stableNormalized();
+  if (!nearest.between.isZero(0.0)) {  // twice: denormal numbers lose digits in the first
+    return nearest.between.stableNormalized().normalized();
   }
   const Vec3 across = a.half == 0.0 ? Vec3(b.axis.unitOrthogonal()) : Vec3(a.axis.cross(b.axis));
   return across.norm() > kParallelSegments ? Vec3(across.normalized()) : a.axis.unitOrthogonal();

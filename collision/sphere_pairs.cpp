@@ -40,7 +40,8 @@ NearestOnBox nearest_on_box(const PlacedBox& box, const Vec3& point) {
   for (int k = 0; k < 3; ++k) {
     sides[k] = (outside[k] > 0.0) - (outside[k] < 0.0);
   }
-  return {box.to_world(nearest), box.axes * outside.stableNormalized(), distance, sides};
+  return {box.to_world(nearest), box.axes * outside.stableNormalized().normalized(), distance,
+          sides};
 }
 
 /// How the box looks at a feature: face, edge (with its direction), vertex.
@@ -81,7 +82,8 @@ void find(const Sphere& a, const Pose& pose_a, const Sphere& b, const Pose& pose
     return;
   }
   const Vec3 between = pose_a.position - pose_b.position;
-  const Vec3 normal = between.isZero(0.0) ? Vec3(Vec3::UnitZ()) : between.stableNormalized();
+  const Vec3 normal =
+      between.isZero(0.0) ? Vec3(Vec3::UnitZ()) : between.stableNormalized().normalized();
   Contact contact =
       make_contact(pose_a.position - a.radius * normal, pose_b.position + b.radius * normal, normal,
                    gap, feature_pair_id(0, 0), NormalOwner::kCurved);
