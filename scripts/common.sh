@@ -26,6 +26,6 @@ configure_and_build() {
     step "configure $preset"
     cmake --preset "$preset" -DSIGNORINI_PRECOMPILE=ON
   fi
-  step "build $preset"
+  step "build $preset${1:+: $*}"
   cmake --build "build/$preset" -j "$jobs" ${1:+--target "$@"}
 }
