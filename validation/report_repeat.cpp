@@ -1,4 +1,5 @@
 #include <signorini/validation/builtin_scenes.h>
+#include <signorini/validation/drop_in.h>
 #include <signorini/validation/input_error.h>
 #include <signorini/validation/report_json.h>
 #include <signorini/validation/report_repeat.h>
@@ -70,6 +71,9 @@ SceneReport repeat_scene(const std::filesystem::path& folder, const Json& json,
   if (!json.at("builtin").get<bool>()) {
     Scene scene = read_scene_text(text, source, {arguments.skip_unsupported, arguments.ground});
     return validate_scene(std::move(scene), options);
+  }
+  if (const DropInScene* drop_in = find_drop_in_scene(name)) {
+    return validate_drop_in(*drop_in, options);
   }
   const BuiltinScene* builtin = find_builtin_scene(name);
   if (builtin == nullptr)

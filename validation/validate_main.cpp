@@ -3,6 +3,7 @@
 #include <signorini/lcp/solve_recorder.h>
 #include <signorini/validation/builtin_scenes.h>
 #include <signorini/validation/bullet_runner.h>
+#include <signorini/validation/drop_in.h>
 #include <signorini/validation/input_error.h>
 #include <signorini/validation/report_repeat.h>
 #include <signorini/validation/sdf_reader.h>
@@ -52,11 +53,12 @@ struct Arguments {
   std::string verify;  ///< a report's folder; empty: run scenes
 };
 
-/// A built-in scene, or one read from a file.
+/// A built-in scene, one of Bullet's examples, or one read from a file.
 struct Job {
   std::string name;
   const BuiltinScene* builtin = nullptr;
-  Scene scene;
+  const DropInScene* drop_in = nullptr;
+  Scene scene = {};
 };
 
 void declare(CLI::App& app, Arguments& arguments) {
@@ -87,9 +89,18 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_flag("--list", arguments.list, "list the built-in scenes and end");
 }
 
+SceneReport validate(Job& job, const RunOptions& options) {
+  if (job.drop_in != nullptr) return validate_drop_in(*job.drop_in, options);
+  return job.builtin != nullptr ? validate_builtin(*job.builtin, options)
+                                : validate_scene(std::move(job.scene), options);
+}
+
 void list_builtin_scenes() {
   for (const BuiltinScene& builtin : builtin_scenes()) {
     fmt::print("{:<28}{}\n", builtin.name, load_builtin_scene(builtin).title);
+  }
+  for (const DropInScene& drop_in : drop_in_scenes()) {
+    fmt::print("{:<28}{}\n", drop_in.name, drop_in.title);
   }
 }
 
@@ -97,20 +108,23 @@ std::vector<Job> load_jobs(const Arguments& arguments) {
   std::vector<Job> jobs;
   if (arguments.scenes.empty()) {
     for (const BuiltinScene& builtin : builtin_scenes()) {
-      jobs.push_back({std::string(builtin.name), &builtin, {}});
+      jobs.push_back({.name = std::string(builtin.name), .builtin = &builtin});
+    }
+    for (const DropInScene& drop_in : drop_in_scenes()) {
+      jobs.push_back({.name = std::string(drop_in.name), .drop_in = &drop_in});
     }
   }
   const ReadOptions options{arguments.run.skip_unsupported, arguments.run.ground};
   for (const std::string& name : arguments.scenes) {
-    const BuiltinScene* builtin =
-        std::filesystem::exists(name) ? nullptr : find_builtin_scene(name);
-    if (builtin != nullptr) {
-      jobs.push_back({name, builtin, {}});
-    } else {
+    const bool is_file = std::filesystem::exists(name);
+    const BuiltinScene* builtin = is_file ? nullptr : find_builtin_scene(name);
+    const DropInScene* drop_in = is_file ? nullptr : find_drop_in_scene(name);
+    jobs.push_back({.name = name, .builtin = builtin, .drop_in = drop_in});
+    if (builtin == nullptr && drop_in == nullptr) {
       const bool terminal = isatty(STDOUT_FILENO) != 0;
       if (terminal) fmt::print("reading {} ...", name);
       std::fflush(stdout);
-      jobs.push_back({name, nullptr, read_scene_file(name, options)});
+      jobs.back().scene = read_scene_file(name, options);
       if (terminal) fmt::print("\r\x1b[K");
     }
   }
@@ -224,8 +238,7 @@ Report run_jobs(std::vector<Job> jobs, const Arguments& arguments,
     Job& job = jobs[i];
     progress.start(i, job.name);
     try {
-      SceneReport scene = job.builtin != nullptr ? validate_builtin(*job.builtin, options)
-                                                 : validate_scene(std::move(job.scene), options);
+      SceneReport scene = validate(job, options);
       scene.command = command_for(arguments, job.name);
       progress.finish(i, scene);
       report.scenes.push_back(std::move(scene));

@@ -58,6 +58,14 @@ const char* const kBallOnPlane =
     "<model name='ground'><static>true</static><link name='l'><collision name='c'><geometry>"
     "<plane/></geometry></collision></link></model></world></sdf>";
 
+TEST_F(Program, DropInScenesRunBulletWithOurSolverInside) {
+  const Outcome outcome = run("drop-in-stack drop-in-vehicle --duration 0.5");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  ASSERT_EQ(report()["scenes"].size(), 2u);
+  EXPECT_EQ(report()["scenes"][0]["name"], "drop-in-stack");
+  EXPECT_EQ(report()["scenes"][0]["verdict"], "pass");
+}
+
 TEST_F(Program, GoodSceneEndsWithZeroAndAReport) {
   const std::string scene = write("ball.sdf", kBallOnPlane);
   const Outcome outcome = run("--duration 0.2 '" + scene + "'");

@@ -49,10 +49,10 @@ DropInSolver bullet_si(int iterations) {
           [] { return std::make_unique<btSequentialImpulseConstraintSolver>(); }};
 }
 
-DropInSolver ours(FrictionModel friction) {
-  return {friction == FrictionModel::kCone ? "signorini" : "signorini box", 0, [friction] {
-            return std::make_unique<ConstraintSolver>(Settings{.friction = friction});
-          }};
+DropInSolver ours(FrictionModel friction, lcp::SolveRecorder* recorder) {
+  const Settings settings{.friction = friction, .recorder = recorder};
+  return {friction == FrictionModel::kCone ? "signorini" : "signorini box", 0,
+          [settings] { return std::make_unique<ConstraintSolver>(settings); }};
 }
 
 double DropInRun::moved_at(double distance) const {

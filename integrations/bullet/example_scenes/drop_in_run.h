@@ -19,7 +19,9 @@ struct DropInSolver {
 /// Bullet's sequential impulses with so many iterations.
 [[nodiscard]] DropInSolver bullet_si(int iterations);
 /// Ours, by the model of its friction: "signorini" (cone) or "signorini box".
-[[nodiscard]] DropInSolver ours(FrictionModel friction = FrictionModel::kCone);
+/// @param recorder is told of every problem; null: nobody
+[[nodiscard]] DropInSolver ours(FrictionModel friction = FrictionModel::kCone,
+                                lcp::SolveRecorder* recorder = nullptr);
 
 /// What happened when a scene of Bullet's examples ran: one number a step, from the first step's
 /// end on.
