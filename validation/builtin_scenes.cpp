@@ -24,6 +24,8 @@ constexpr BuiltinScene kScenes[] = {
     {"slope-stick-by-a-hair", check_slope},
     {"slope-slide-by-a-hair", check_slope},
     {"stack-of-5", check_stack},
+    {"pendulum", check_pendulum},
+    {"load-on-a-chain", check_load_on_a_chain},
     {"newtons-cradle", check_newtons_cradle},
     {"ball-between-walls", check_ball_between_walls},
     {"ball-between-tilted-walls", check_ball_between_walls},

@@ -41,6 +41,8 @@ void check_box_landing(const Scene& scene, const RunOptions& options, SceneRepor
 void check_slope(const Scene& scene, const RunOptions& options, SceneReport& report);
 void check_stack(const Scene& scene, const RunOptions& options, SceneReport& report);
 void check_mass_ratio(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_pendulum(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_load_on_a_chain(const Scene& scene, const RunOptions& options, SceneReport& report);
 void check_newtons_cradle(const Scene& scene, const RunOptions& options, SceneReport& report);
 void check_ball_between_walls(const Scene& scene, const RunOptions& options, SceneReport& report);
 void check_rod_on_supports(const Scene& scene, const RunOptions& options, SceneReport& report);

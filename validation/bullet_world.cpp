@@ -1,3 +1,4 @@
+#include <signorini/validation/bullet_joints.h>
 #include <signorini/validation/bullet_world.h>
 #include <signorini/validation/input_error.h>
 
@@ -91,9 +92,23 @@ BulletWorld::BulletWorld(const Scene& scene, const BulletProfile& profile)
     parts_[first].body->setIgnoreCollisionCheck(parts_[second].body.get(), true);
     parts_[second].body->setIgnoreCollisionCheck(parts_[first].body.get(), true);
   }
+  for (const Joint& joint : scene.joints) add_joint(joint);
+}
+
+void BulletWorld::add_joint(const Joint& joint) {
+  const BodyParts& a = parts_[joint.body_a];
+  const BodyParts& b = parts_[joint.body_b];
+  auto made = make_bullet_joint(joint, *a.body, a.principal, *b.body, b.principal, scene_.step);
+  if (made == nullptr) {
+    throw InputError(scene_.source + ": joint '" + joint.name +
+                     "': Bullet has no constraint for a distance");
+  }
+  world_.addConstraint(made.get(), !joint.bodies_collide);
+  joints_.push_back(std::move(made));
 }
 
 BulletWorld::~BulletWorld() {
+  for (const auto& joint : joints_) world_.removeConstraint(joint.get());
   for (BodyParts& parts : parts_) world_.removeRigidBody(parts.body.get());
 }
 

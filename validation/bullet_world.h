@@ -40,6 +40,7 @@ class BulletWorld {
   };
 
   void add_body(int index);
+  void add_joint(const Joint& joint);
   void add_shapes(int index, BodyParts& parts);
   /// Leaves out pairs of bodies of which no colliders meet, by their filters.
   class PairFilter final : public btOverlapFilterCallback {
@@ -64,6 +65,7 @@ class BulletWorld {
   btDiscreteDynamicsWorld world_;
   PairFilter filter_;
   std::vector<BodyParts> parts_;
+  std::vector<std::unique_ptr<btTypedConstraint>> joints_;
   std::set<std::string> remarks_;
 };
 

@@ -36,6 +36,7 @@ double reach(const Scene& scene, int body) {
 }
 
 bool nothing_in_the_way(const Scene& scene) {
+  if (!scene.joints.empty()) return false;
   std::vector<int> bodies;
   for (const collision::Collider& collider : scene.colliders) bodies.push_back(collider.body);
   std::sort(bodies.begin(), bodies.end());

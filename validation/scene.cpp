@@ -43,6 +43,7 @@ void validate(const Scene& scene) {
   try {
     for (const Body& body : scene.bodies) signorini::validate(body);
     signorini::validate(scene.bodies, scene.state);
+    signorini::validate(scene.joints, scene.bodies);
     const int count = static_cast<int>(scene.bodies.size());
     for (const collision::Collider& collider : scene.colliders) {
       collision::validate(collider, count);

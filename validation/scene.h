@@ -2,6 +2,7 @@
 
 #include <signorini/collision/shape.h>
 #include <signorini/core/model/body.h>
+#include <signorini/core/model/joint.h>
 #include <signorini/core/model/material.h>
 
 #include <string>
@@ -20,8 +21,9 @@ struct Scene {
   Bodies bodies;
   State state;  ///< at t = 0
   std::vector<collision::Collider> colliders;
+  Joints joints;
   /// Pairs of bodies whose contacts do not exist (first < second, sorted): links of one model
-  /// without self_collide.
+  /// without self_collide, and bodies that a joint connects.
   std::vector<std::pair<int, int>> never_collide;
   Vec3 gravity = Vec3(0.0, 0.0, -9.8);  ///< m/s^2, SDFormat's default
   double step = 0.001;                  ///< s, > 0, SDFormat's default

@@ -1,5 +1,6 @@
 #include <signorini/validation/input_error.h>
 #include <signorini/validation/sdf_extras.h>
+#include <signorini/validation/sdf_joints.h>
 #include <signorini/validation/sdf_reader.h>
 #include <signorini/validation/sdf_shapes.h>
 #include <signorini/validation/sdf_survey.h>
@@ -125,6 +126,7 @@ class SceneBuilder {
       const std::string body =
           model.LinkCount() + model.ModelCount() == 1 ? name : name + "::" + link.Name();
       if (!add_link(model, link, pose, body)) continue;
+      body_of_link_[name + "::" + link.Name()] = static_cast<int>(scene_.bodies.size()) - 1;
       links.emplace_back(static_cast<int>(scene_.bodies.size()) - 1,
                          link.Element()->Get<bool>("self_collide", model.SelfCollide()).first ||
                              model.SelfCollide());
@@ -138,6 +140,7 @@ class SceneBuilder {
     for (std::uint64_t i = 0; i < model.ModelCount(); ++i) {
       add_model(*model.ModelByIndex(i), pose, name + "::");
     }
+    add_joints(model, pose, name, body_of_link_, survey_, scene_);
   }
 
   void finish() {
@@ -356,6 +359,7 @@ class SceneBuilder {
   ShapeReader shapes_;
   bool has_world_ = false;
   std::vector<std::string> default_inertia_;
+  BodyOfLink body_of_link_;
   std::string computed_inertia_;  ///< a notice
 };
 

@@ -24,7 +24,7 @@ struct ReadOptions {
 /// capsule, ellipsoid, cone, plane (a half-space with any normal; static models only; its size is
 /// ignored), mesh (triangles; of a dynamic body their convex hull: sdf_shapes.h); several a link
 /// move as one. <inertial auto="true"> is computed from the shapes. Two colliders meet if their
-/// <collide_bitmask>s have a bit in common. Materials: friction from
+/// <collide_bitmask>s have a bit in common. Joints: sdf_joints.h. Materials: friction from
 /// <surface><friction><ode><mu>, restitution from <bounce><restitution_coefficient>; a pair has the
 /// minimum of the two (Gazebo's rule). Links of one model collide only with <self_collide>. Gravity
 /// and <max_step_size> are the world's.

@@ -1,5 +1,6 @@
 #include <signorini/core/model/body.h>
 #include <signorini/validation/input_error.h>
+#include <signorini/validation/sdf_joints.h>
 #include <signorini/validation/sdf_survey.h>
 #include <signorini/validation/xml_check.h>
 
@@ -41,15 +42,19 @@ constexpr std::array<std::string_view, 21> kWithoutPhysics = {"visual",
                                                               "real_time_update_rate"};
 
 /// Containers whose children are walked.
-constexpr std::array<std::string_view, 10> kStructure = {
-    "sdf",     "world",  "model",   "link",     "collision",
-    "surface", "bounce", "physics", "friction", "inertial"};
+constexpr std::array<std::string_view, 14> kStructure = {
+    "sdf",     "world",    "model",    "link",  "collision", "surface", "bounce",
+    "physics", "friction", "inertial", "joint", "axis",      "limit",   "dynamics"};
 
 /// Used by the reader, or without meaning for a single run.
 constexpr std::array<std::string_view, 15> kUsed = {
     "pose", "static",   "gravity", "max_step_size",    "self_collide",
     "mu",   "mu2",      "mass",    "inertia",          "restitution_coefficient",
     "name", "geometry", "density", "real_time_factor", "allow_auto_disable"};
+
+/// Of joints: read by sdf_joints.h, which says what it leaves out.
+constexpr std::array<std::string_view, 7> kUsedOfJoints = {
+    "parent", "child", "xyz", "lower", "upper", "damping", "spring_stiffness"};
 
 constexpr std::array<std::string_view, 6> kWorldExtensions = {
     "signorini:title",   "signorini:description", "signorini:duration",
@@ -118,7 +123,7 @@ void SdfSurvey::walk(const sdf::ElementPtr& element) {
   if (name == "ode" && parent == "friction") check_friction(element);
   if (contains(kStructure, name) || (name == "ode" && parent == "friction")) {
     walk_children(element);
-  } else if (!contains(kUsed, name)) {
+  } else if (!contains(kUsed, name) && !contains(kUsedOfJoints, name)) {
     mention_ignored(element);
   }
 }
@@ -159,11 +164,12 @@ std::string SdfSurvey::unsupported(const sdf::ElementPtr& element) const {
       return reason;
     }
   }
-  if (name == "joint" || name == "gripper" || name == "population") {
-    const std::string type =
-        element->HasAttribute("type") ? element->GetAttribute("type")->GetAsString() : "";
-    return fmt::format("<{}{}> is not supported", name,
-                       type.empty() ? "" : fmt::format(" type=\"{}\"", type));
+  if (name == "joint") {
+    return unsupported_joint(
+        element->HasAttribute("type") ? element->GetAttribute("type")->GetAsString() : "");
+  }
+  if (name == "gripper" || name == "population") {
+    return fmt::format("<{}> is not supported", name);
   }
   if (name == "kinematic" && parent == "link" && element->Get<bool>()) {
     return "<kinematic>true</kinematic> is not supported";

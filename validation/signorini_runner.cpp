@@ -68,7 +68,7 @@ Track run_signorini(const Scene& scene, const TimeStepSettings& settings, const 
                     const StepWatcher& watch) {
   SceneContacts contacts(scene);
   SceneContacts ruler(scene);
-  TimeStepper stepper(scene.bodies, contacts, settings);
+  TimeStepper stepper(scene.bodies, contacts, settings, scene.joints);
   State state = scene.state;
   StepReport report;
   Track track;

@@ -17,7 +17,7 @@ namespace {
 
 using tinyxml2::XMLElement;
 
-enum class Bound : unsigned char { kFinite, kPositive, kNotNegative, kUnitInterval };
+enum class Bound : unsigned char { kFinite, kPositive, kNotNegative, kUnitInterval, kDirection };
 
 struct NumberRule {
   int count;
@@ -44,6 +44,7 @@ const std::map<std::string_view, NumberRule>& sdf_rules() {
       {"normal", {3}},
       {"mu", {1, Bound::kNotNegative}},
       {"mu2", {1, Bound::kNotNegative}},
+      {"xyz", {3, Bound::kDirection}},
       {"restitution_coefficient", {1, Bound::kUnitInterval}},
       {"signorini:duration", {1, Bound::kPositive}},
       {"signorini:error_scale", {1, Bound::kPositive}},
@@ -65,6 +66,7 @@ const std::map<std::pair<std::string_view, std::string_view>, NumberRule>& urdf_
       {{"inertia", "izz"}, {1}},
       {{"origin", "xyz"}, {3}},
       {{"origin", "rpy"}, {3}},
+      {{"axis", "xyz"}, {3, Bound::kDirection}},
       {{"box", "size"}, {3, Bound::kPositive}},
       {{"sphere", "radius"}, {1, Bound::kPositive}},
       {{"cylinder", "radius"}, {1, Bound::kPositive}},
@@ -84,6 +86,7 @@ std::string_view wish(Bound bound) {
     case Bound::kPositive: return "finite and > 0";
     case Bound::kNotNegative: return "finite and >= 0";
     case Bound::kUnitInterval: return "in [0, 1]";
+    case Bound::kDirection: return "finite and not all zero";
   }
   return "";
 }
@@ -91,7 +94,8 @@ std::string_view wish(Bound bound) {
 bool meets(double value, Bound bound) {
   if (!std::isfinite(value)) return false;
   switch (bound) {
-    case Bound::kFinite: return true;
+    case Bound::kFinite:
+    case Bound::kDirection: return true;
     case Bound::kPositive: return value > 0.0;
     case Bound::kNotNegative: return value >= 0.0;
     case Bound::kUnitInterval: return value >= 0.0 && value <= 1.0;
@@ -124,10 +128,13 @@ void check_text(const char* text, const NumberRule& rule, const XMLElement& elem
   const std::string given = text == nullptr ? "" : text;
   const std::vector<std::string_view> parts = words(given);
   bool good = static_cast<int>(parts.size()) == rule.count;
+  bool all_zero = true;
   for (const std::string_view part : parts) {
     const std::optional<double> value = number(part);
     good = good && value.has_value() && meets(*value, rule.bound);
+    all_zero = all_zero && value == 0.0;
   }
+  good = good && !(all_zero && rule.bound == Bound::kDirection);
   if (!good) {
     throw InputError(fmt::format("{}: {}: must be {} number{}, {}, got '{}'",
                                  locate(element, source), field, rule.count,

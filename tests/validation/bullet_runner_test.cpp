@@ -5,6 +5,7 @@
 #include <signorini/validation/bullet_shapes.h>
 #include <signorini/validation/input_error.h>
 #include <signorini/validation/sdf_reader.h>
+#include <signorini/validation/signorini_runner.h>
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -51,6 +52,39 @@ TEST(BulletRunner, DefaultProfileDoesNotKeepRestitution) {
   const Scene scene = builtin("ball-drop-e0.9");
   const auto [after, before] = first_bounce(run_bullet(scene, BulletProfile::bullet_default()));
   EXPECT_GT(std::abs(after / before - 0.9), 0.01);
+}
+
+TEST(BulletRunner, JointsHaveTheSameCoordinateLimitsAndMotors) {
+  // A wheel on a hinge and a box on a rail, each driven either way against either limit: Bullet
+  // ends where we do.
+  for (const JointKind kind : {JointKind::kHinge, JointKind::kSlider}) {
+    for (const double speed : {1.0, -1.0}) {
+      Scene scene;
+      scene.source = "joints";
+      scene.step = 1.0 / 240.0;
+      scene.duration = 2.0;
+      scene.gravity = Vec3::Zero();
+      scene.bodies.resize(2);
+      scene.bodies[0].kind = BodyKind::kFixed;
+      scene.bodies[1].inertia = Vec3(1.0, 1.5, 2.0).asDiagonal();
+      scene.state.resize(2);
+      scene.state[1].x = Vec3(0.3, 0.0, 0.0);
+      scene.state[1].q = Quat(Eigen::AngleAxisd(0.4, Vec3(1.0, 2.0, 3.0).normalized()));
+      Joint joint = joint_at(kind, 1, 0, scene.state, scene.state[1].x, {1.0, 0.0, 1.0});
+      joint.limits = {-0.5, 0.25};
+      joint.motor = {speed, 20.0};
+      scene.joints = {joint};
+      const double expected = speed > 0.0 ? 0.25 : -0.5;
+      for (const Track& track : {run_signorini(scene, step_settings(scene)),
+                                 run_bullet(scene, BulletProfile::neutral())}) {
+        State end = scene.state;
+        end[1].x = track.last(1).pose.position;
+        end[1].q = track.last(1).pose.orientation;
+        EXPECT_NEAR(joint_coordinate(joint, end), expected, 0.02)
+            << track.engine << " " << to_string(kind) << " " << speed;
+      }
+    }
+  }
 }
 
 TEST(BulletRunner, PairMaterialFollowsTheScenesRuleNotBulletsProduct) {

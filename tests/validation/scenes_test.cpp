@@ -323,21 +323,20 @@ TEST_P(QuickScenes, Pass) {
   EXPECT_EQ(report.verdict(), Verdict::kPass);
 }
 
-INSTANTIATE_TEST_SUITE_P(BuiltIn, QuickScenes,
-                         testing::Values("free-flight", "ball-drop-e0", "ball-drop-e0.5",
-                                         "ball-drop-e0.9", "ball-drop-e1", "wedge",
-                                         "newtons-cradle", "ball-between-walls",
-                                         "ball-between-tilted-walls", "rod-on-two-supports",
-                                         "rolling-sphere", "rolling-cylinder", "slipping-capsule",
-                                         "sliding-headings", "landing-shapes", "box-on-an-edge",
-                                         "dzhanibekov", "card-house", "elastic-balls",
-                                         "rolling-capsule", "thrown-cylinder",
-                                         "slope-stick-by-a-hair", "slope-slide-by-a-hair"),
-                         [](const auto& scene) {
-                           std::string name = scene.param;
-                           for (char& c : name) c = std::isalnum(c) ? c : '_';
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    BuiltIn, QuickScenes,
+    testing::Values("free-flight", "ball-drop-e0", "ball-drop-e0.5", "ball-drop-e0.9",
+                    "ball-drop-e1", "wedge", "newtons-cradle", "pendulum", "load-on-a-chain",
+                    "ball-between-walls", "ball-between-tilted-walls", "rod-on-two-supports",
+                    "rolling-sphere", "rolling-cylinder", "slipping-capsule", "sliding-headings",
+                    "landing-shapes", "box-on-an-edge", "dzhanibekov", "card-house",
+                    "elastic-balls", "rolling-capsule", "thrown-cylinder", "slope-stick-by-a-hair",
+                    "slope-slide-by-a-hair"),
+    [](const auto& scene) {
+      std::string name = scene.param;
+      for (char& c : name) c = std::isalnum(c) ? c : '_';
+      return name;
+    });
 
 }  // namespace
 }  // namespace signorini::validation
