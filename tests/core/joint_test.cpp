@@ -271,6 +271,31 @@ TEST(Joints, ALoadHangsStillOnAChainOfLightLinks) {
   }
 }
 
+TEST(Joints, AChainOfSixtyOnAPlaneIsSolvedInAConeAndAPyramid) {
+  // More rows than the dense solvers are asked for: other solvers of "auto", and the certificate.
+  for (const FrictionModel model : {FrictionModel::kCone, FrictionModel::kPyramid}) {
+    SCOPED_TRACE(std::string(to_string(model)));
+    Mechanism scene;
+    scene.add(fixed_body(), at(Vec3::Zero()));
+    std::vector<testing_tools::TestBody> shapes;
+    for (int i = 1; i <= 60; ++i) {
+      scene.add(ball_body(0.1, 0.04), at({0.1 * i, 0.0, 0.0401}));
+      shapes.push_back({TestBall{0.04}, {0.4, 0.0}});
+      if (i > 1) scene.join(JointKind::kBall, i, i - 1, {0.1 * i - 0.05, 0.0, 0.0401});
+    }
+    PlaneContacts finder(Vec3::UnitZ(), shapes);
+    TimeStepSettings settings;
+    settings.friction_model = model;
+    TimeStepper stepper(scene.bodies, finder, settings, scene.joints);
+    State state = scene.state;
+    state[30].p = Vec3(0.0, 0.3, 0.2);
+    int most = 0;
+    run(stepper, state, 30,
+        [&](int, const StepReport& report) { most = std::max(most, report.rows); });
+    EXPECT_GT(most, 300);
+  }
+}
+
 TEST(Joints, ASliderStopsAtItsLimitAndItsMotorHasTheClosedForm) {
   // On a vertical axis with a motor of F = 1.5 m g: rises with (F - m g)/m until it has its speed.
   Mechanism scene;

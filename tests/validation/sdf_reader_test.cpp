@@ -579,6 +579,27 @@ TEST(SdfReader, JointsBecomeOurs) {
   EXPECT_EQ(scene.joints[3].kind, JointKind::kFixed);
 }
 
+TEST(UrdfReader, JointsBecomeOurs) {
+  const Scene scene = read_scene_text(
+      "<robot name=\"arm\">"
+      "<link name=\"a\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" "
+      "iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial></link>"
+      "<link name=\"b\"><inertial><mass value=\"2\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" "
+      "iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial></link>"
+      "<joint name=\"elbow\" type=\"revolute\"><origin xyz=\"0.5 0 0\" rpy=\"0 0 0\"/>"
+      "<parent link=\"a\"/><child link=\"b\"/><axis xyz=\"0 1 0\"/>"
+      "<limit lower=\"-1\" upper=\"2\" effort=\"5\" velocity=\"1\"/></joint></robot>",
+      "arm.urdf");
+  ASSERT_EQ(scene.joints.size(), 1u);
+  const Joint& elbow = scene.joints[0];
+  EXPECT_EQ(elbow.kind, JointKind::kHinge);
+  EXPECT_EQ(elbow.body_a, scene.body("arm::b"));
+  EXPECT_EQ(elbow.limits.lower, -1.0);
+  EXPECT_EQ(elbow.limits.upper, 2.0);
+  EXPECT_NEAR((anchor_b(elbow, scene.state) - Vec3(0.5, 0.0, 0.0)).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((elbow.axis - Vec3::UnitY()).norm(), 0.0, 1e-12);
+}
+
 TEST(SdfReader, WhatOfAJointIsLeftOutIsNamed) {
   const std::string ends = "<parent>a</parent><child>b</child>";
   const Scene scene = read(arm(
