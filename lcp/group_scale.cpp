@@ -61,8 +61,8 @@ double largest_eigenvalue(const Eigen::Matrix3d& block, int d) {
     most = 0.5 * (block(0, 0) + block(1, 1)) + std::hypot(half_difference, off);
   } else {
     const Eigen::Matrix3d symmetric = 0.5 * block + 0.5 * block.transpose();
-    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-    solver.computeDirect(symmetric, Eigen::EigenvaluesOnly);
+    // Not computeDirect(): its closed form is wrong by any factor where the rows are scaled apart.
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(symmetric, Eigen::EigenvaluesOnly);
     most = solver.eigenvalues()[2];
   }
   return most > 0.0 ? most : 1.0;

@@ -287,6 +287,9 @@ TEST(FuzzStudy, WhatWasFoundStaysMended) {
       {"pgs", 83624, "q = 0 and a w that long double loses, called solved"},
       {"symmetric-pgs", 83624, "the same"},
       {"nncg", 83624, "the same"},
+      {"cone-interior-point", 39840, "a cone's scale too small by half, from a closed form"},
+      {"cone-interior-point", 81171, "the same, by forty powers of ten"},
+      {"alart-curnier", 81171, "the same"},
   };
   for (const Found& found : kFound) {
     std::ostringstream out;
