@@ -22,7 +22,8 @@ std::string to_text(const StepReport& report) {
             (report.is_deterministic ? "" : ", limited by time: not deterministic") + "\n";
   }
   text += "seconds: find " + number_text(report.seconds.find) + ", solve " +
-          number_text(report.seconds.solve) + ", project " + number_text(report.seconds.project) + "\n";
+          number_text(report.seconds.solve) + ", project " + number_text(report.seconds.project) +
+          "\n";
   for (std::size_t k = 0; k < report.islands.size(); ++k) {
     const IslandReport& island = report.islands[k];
     text += "island " + count(k) + ": " + std::to_string(island.bodies) + " bodies, " +

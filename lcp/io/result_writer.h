@@ -21,9 +21,10 @@ void write_vector(const std::filesystem::path& file, const Vector& vector);
 /// A result as a JSON object (without z and w): status, solver, detail, iterations, pivots,
 /// factorizations, refinements, factor_bytes, solve_seconds, certificate (its members by their
 /// names), ray_bound, islands where they were certified (an array: whether the island is solved by
-/// itself, its rows, its certificate), and attempts where the solver tried others. Numbers with as many digits as
-/// read back to the same bits. null: there is no such number (NaN, or a counter that the solver
-/// does not have); infinity is the string "inf" or "-inf", since JSON has no number for it.
+/// itself, its rows, its certificate), and attempts where the solver tried others. Numbers with as
+/// many digits as read back to the same bits. null: there is no such number (NaN, or a counter that
+/// the solver does not have); infinity is the string "inf" or "-inf", since JSON has no number for
+/// it.
 /// @param tolerance the one that was asked for
 /// @param friction_law of the problem's cones, as friction_law; left out if empty
 /// @param indent spaces a level, -1: all on one line
