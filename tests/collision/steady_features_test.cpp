@@ -64,16 +64,19 @@ Flicker run(Stack stack, int steps) {
   settings.solver = "auto";
   TimeStepper stepper(stack.bodies, world, settings);
   StepReport report;
+  ContactSet contacts;
   Flicker flicker;
   std::set<std::uint64_t> before;
   for (int k = 0; k < steps; ++k) {
     stepper.step(stack.state, report);
     EXPECT_TRUE(lcp::is_solved(report.status)) << "step " << k;
+    // What was found, not the step's rows: a corner 1e-10 m above its face may do without one.
+    world.find(stack.state, settings.margin, contacts);
     std::set<std::uint64_t> ids;
-    for (const Contact& contact : report.contacts) {
+    for (const Contact& contact : contacts) {
       ids.insert(contact.feature_id);
     }
-    EXPECT_EQ(ids.size(), report.contacts.size()) << "step " << k;
+    EXPECT_EQ(ids.size(), contacts.size()) << "step " << k;
     if (k > 0) {
       for (const std::uint64_t id : ids) {
         flicker.changed_ids += before.contains(id) ? 0 : 1;
