@@ -9,7 +9,7 @@ namespace {
 
 class OurPlayer final : public ScenePlayer {
  public:
-  OurPlayer(const SteppedScene& scene, TimeStepSettings settings)
+  OurPlayer(const SteppedScene& scene, const TimeStepSettings& settings)
       : world_(scene.bodies, scene.colliders, PairingRule::kMinimum),
         stepper_(scene.bodies, world_, with_step(settings, scene.step)),
         state_(scene.state) {}
