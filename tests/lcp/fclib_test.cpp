@@ -4,6 +4,7 @@
 #include "tests/lcp/temporary_folder.h"
 
 #include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <gtest/gtest.h>
 #include <limits>
@@ -475,10 +476,8 @@ TEST(Fclib, EveryTruncationIsRefused) {
   EXPECT_THROW((void)read_fclib(folder.path() / "absent"), InputError);
 }
 
-TEST(Fclib, FlippedBytesAreReadOrRefused) {
-#ifdef __SANITIZE_ADDRESS__
-  GTEST_SKIP() << "the HDF5 library itself leaks what it opened in a damaged file";
-#endif
+/// Reads 300 files of which a byte is wrong.
+void read_damaged_files() {
   const TemporaryFolder folder;
   const auto path = folder.path() / "x.hdf5";
   LocalFile().write(path);
@@ -493,6 +492,16 @@ TEST(Fclib, FlippedBytesAreReadOrRefused) {
     } catch (const InputError&) {
     }
   }
+}
+
+// In a process of its own: HDF5 itself loses what it opened in a damaged file.
+TEST(Fclib, FlippedBytesAreReadOrRefused) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto read_and_leave = [] {
+    read_damaged_files();
+    std::_Exit(0);
+  };
+  EXPECT_EXIT(read_and_leave(), testing::ExitedWithCode(0), "");
 }
 
 /// h5dump, if it is installed, sees the layout of FCLIB.
