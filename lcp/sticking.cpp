@@ -277,7 +277,8 @@ int Sticking::Workspace::correct() {
     if (state_[c] == Contact::kSticking && row_violation(groups_[c]) > rounding) {
       state_[c] = Contact::kSliding;  // against the way that sticking would push
       auto friction = x_.segment(first + 1, dimension - 1);
-      friction *= mu * std::max(x_[first], 0.0) / friction.norm();
+      const double size = friction.norm();  // 0: only the normal is outside, by rounding
+      friction *= size > 0.0 ? mu * std::max(x_[first], 0.0) / size : 0.0;
       ++wrong;
     } else if (state_[c] == Contact::kSliding && reversed_[c] != 0) {
       state_[c] = Contact::kSticking;
