@@ -4,11 +4,10 @@
 
 namespace signorini::validation {
 
-/// How far the semi-implicit scheme itself lets the mechanical energy rise above its start, J.
+/// How far the stepper's default scheme itself lets the mechanical energy rise above its start, J.
 ///
-/// Flight: the scheme keeps E - (h/2) g.p exactly, so E moves by (h/2) |g| times the change of the
-/// momenta along g. Turning with L fixed: per step E changes by at most
-/// h^2 |w|^2 |L|^2 (1/J_min - 1/J_max), the second-order term of the orientation step.
+/// Flight: it keeps E - (h/2) g.p exactly, so E moves by (h/2) |g| times the change of the momenta
+/// along g. Turning between impulses keeps E (Integrator::kEnergyMomentum).
 [[nodiscard]] double scheme_energy_rise(const Scene& scene, const Track& track);
 
 /// The greatest speed of any dynamic body's surface or centre that the track saw, m/s: |v| of the

@@ -41,6 +41,10 @@ void count_ending(const StepReport& report, double time, Track& track) {
     track.solver_seconds += report.result.statistics.solve_seconds;
   }
   track.projection_energy += report.energy_change_projection;
+  for (const Vec3& impulse : report.impulses) track.impulse += impulse.norm();
+  for (const JointReport& joint : report.joints) {
+    track.impulse += joint.impulse.norm() + joint.moment.norm();
+  }
   if (report.projection_status != lcp::Status::kNotRun &&
       !lcp::is_solved(report.projection_status)) {
     ++track.unsolved_projections;

@@ -48,6 +48,7 @@ struct Track {
   long unsolved_steps = 0;              ///< steps whose contact problem was not solved
   std::string first_unsolved;           ///< when and why the first of them was not
   long unsolved_projections = 0;        ///< position projections that were not solved (ours)
+  double impulse = 0.0;  ///< sum of the sizes of all contacts' and joints' impulses (ours), N s
   double projection_energy = 0.0;  ///< sum of the potential energy changes by projection (ours), J
   double wall_seconds = 0.0;       ///< of the steps alone, measuring and recording apart
   double solver_seconds = -1.0;    ///< inside the LCP solver (ours); -1: not measured

@@ -5,6 +5,7 @@
 #include <signorini/validation/sdf_reader.h>
 #include <signorini/validation/signorini_runner.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -101,6 +102,18 @@ TEST(HarnessCanFail, RollingWithMoreFrictionThanTheClosedForm) {
   EXPECT_EQ(find_check(report, "speed at the end")->judged(), Verdict::kFail);
 }
 
+TEST(HarnessCanFail, GravityHalfAPercentOff) {
+  Scene cylinder = builtin("rolling-cylinder");
+  cylinder.bodies[0].gravity_scale = 1.005;
+  const SceneReport rolled = checked("rolling-cylinder", cylinder);
+  for (const char* name : {"speed at the end", "spin at the end", "distance at the end"}) {
+    EXPECT_EQ(find_check(rolled, name)->judged(), Verdict::kFail) << name;
+  }
+  Scene pendulum = builtin("pendulum");
+  pendulum.bodies[pendulum.body("pendulum")].gravity_scale = 1.005;
+  EXPECT_EQ(find_check(checked("pendulum", pendulum), "period")->judged(), Verdict::kFail);
+}
+
 TEST(HarnessCanFail, BlocksThatTurn) {
   Scene scene = builtin("sliding-headings");
   const Vec3 v = velocity(scene.bodies[2], scene.state[2]).linear;
@@ -183,6 +196,41 @@ TEST(GenericChecks, EnergyThatRisesFails) {
   SceneReport tampered;
   add_energy_check(scene, runs, tampered);
   EXPECT_EQ(tampered.verdict(), Verdict::kFail);
+}
+
+TEST(GenericChecks, EnergyBoundsAreSmallAgainstTheEnergy) {
+  for (const char* name : {"rolling-cylinder", "rolling-capsule", "pendulum", "dzhanibekov"}) {
+    const Scene scene = builtin(name);
+    Runs runs;
+    runs.signorini = run_signorini(scene, step_settings(scene));
+    SceneReport report;
+    add_energy_check(scene, runs, report);
+    const std::vector<double>& kinetic = runs.signorini->kinetic;
+    EXPECT_LT(find_check(report, "energy above")->tolerance,
+              0.2 * *std::max_element(kinetic.begin(), kinetic.end()))
+        << name;
+  }
+}
+
+/// What the energy check allows for the solver's tolerance goes with the tolerance.
+TEST(GenericChecks, EnergyOfARestingBoxRisesByTheTolerance) {
+  const Scene scene = builtin("slope-stick");
+  const auto rise = [](const Track& track) {
+    double most = track.energy(0);
+    for (std::size_t k = 0; k < track.size(); ++k) most = std::max(most, track.energy(k));
+    return most - track.energy(0);
+  };
+  TimeStepSettings settings = step_settings(scene);
+  settings.lcp.tolerance = 1e-12;
+  const Track tight = run_signorini(scene, settings);
+  EXPECT_LE(rise(tight), scheme_energy_rise(scene, tight));
+  EXPECT_EQ(tight.projection_energy, 0.0);
+  // The contacts bear the weight all the time.
+  const double weight = scene.bodies[0].mass * scene.gravity.norm();
+  EXPECT_GE(tight.impulse, 0.999 * weight * scene.duration);
+  EXPECT_LE(tight.impulse, 1.5 * weight * scene.duration);
+  const Track loose = run_signorini(scene, step_settings(scene));
+  EXPECT_GT(rise(loose), 10.0 * rise(tight));
 }
 
 TEST(GenericChecks, OverlapDeeperThanAStepFails) {

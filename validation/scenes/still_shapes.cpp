@@ -92,10 +92,12 @@ void check_resting_shapes(const Scene& scene, const RunOptions& options, SceneRe
     return most;
   };
   const double t = scene.duration;
-  const double bound = step_settings(scene).lcp.tolerance * (1.0 + scene.gravity.norm()) * t + 1e-8;
+  const double q = scene.step * scene.gravity.norm();
+  const double bound = step_settings(scene).lcp.tolerance * (1.0 + q) * t + 1e-8;
   judge(scene, runs, "from where they stood", bound, 10.0 * bound,
         "closed form: no motion; each step's velocities are solved to the tolerance times "
-        "(1 + |q|), distances of round shapes are found to 1e-8 of their size; the turn: over a "
+        "(1 + |q|), |q| = h g, distances of round shapes are found to 1e-8 of their size; the "
+        "turn: over a "
         "tenth of a metre",
         farthest, report);
   add_energy_check(scene, runs, report);
