@@ -152,7 +152,8 @@ class SceneBuilder {
     std::sort(scene_.never_collide.begin(), scene_.never_collide.end());
     if (!scene_.never_collide.empty()) {
       scene_.notices.push_back(
-          fmt::format("{} pairs of links of one model do not collide: no <self_collide>",
+          fmt::format("{} pairs of bodies do not collide: links of one model without "
+                      "<self_collide>, or joined",
                       scene_.never_collide.size()));
     }
     for (const std::string& line : shapes_.notices()) scene_.notices.push_back(line);

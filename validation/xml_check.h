@@ -25,7 +25,7 @@ SceneFormat parse_xml(const std::string& text, const std::string& source,
 void check_numbers(const tinyxml2::XMLDocument& document, SceneFormat format,
                    const std::string& source);
 
-/// Empty for a collision shape that this build reads, else "collision shape <polyline> is not
+/// Empty for a collision shape that this build reads, else "collision shape <heightmap> is not
 /// supported (supported: ...)".
 [[nodiscard]] std::string unsupported_shape(std::string_view shape, SceneFormat format);
 
