@@ -8,7 +8,7 @@ namespace signorini::validation {
 
 /// One way to run a scene: how far off it ends, and what it costs.
 struct TradePoint {
-  std::string solver;            ///< "Signorini, auto 1e-8", "Bullet, neutral, 50 iterations"
+  std::string solver;            ///< "Signorini, 1e-08", "Bullet, neutral, 50 iterations"
   std::string engine;            ///< "signorini" or "bullet"
   double step = 0.0;             ///< s
   double error = 0.0;            ///< of the scene's error, in its unit; NaN: the run gave none
