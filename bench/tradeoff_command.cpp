@@ -140,7 +140,8 @@ int TradeoffCommand::run() const {
   const std::vector<LevelScore> scores = level_scores(dial, o.levels, o.study.limits.child.seconds);
   std::vector<std::string> remarks = {
       fmt::format("{} problems, {} positions of the dial ({:g}), {} solvers", problems.size(),
-                  dial.size(), fmt::join(o.dial, ", "), entries.size()),
+                  dial.size(), fmt::join(o.dial, ", "),
+                  o.study.solvers.empty() ? entries.size() : o.study.solvers.size()),
       fmt::format("one thread; time limit {:g} s, which is what an unsolved problem counts as",
                   o.study.limits.child.seconds),
       fmt::format("runs of ours that said solved and were not, or crashed: {}", wrong)};

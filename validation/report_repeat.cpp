@@ -122,13 +122,9 @@ class Comparison {
   RepeatedReport& result_;
 };
 
-}  // namespace
-
-RepeatedReport repeat_report(
-    const std::string& folder, const StopFlag* stop,
+RepeatedReport repeat(
+    const std::filesystem::path& path, const Json& before, const StopFlag* stop,
     const std::function<void(std::size_t, std::size_t, const std::string&)>& on_scene) {
-  const std::filesystem::path path(folder);
-  const Json before = read_report(path / "report.json");
   Report report;
   report.arguments = read_arguments(before.at("arguments"));
   report.partial = before.at("partial");
@@ -143,6 +139,20 @@ RepeatedReport repeat_report(
   result.scenes = scenes.size();
   Comparison(result).compare(before, Json::parse(report_json(report)), "");
   return result;
+}
+
+}  // namespace
+
+RepeatedReport repeat_report(
+    const std::string& folder, const StopFlag* stop,
+    const std::function<void(std::size_t, std::size_t, const std::string&)>& on_scene) {
+  const std::filesystem::path path(folder);
+  const Json before = read_report(path / "report.json");
+  try {
+    return repeat(path, before, stop, on_scene);
+  } catch (const Json::exception& error) {  // a field that is missing or of another type
+    throw InputError((path / "report.json").string() + ": " + error.what());
+  }
 }
 
 }  // namespace signorini::validation

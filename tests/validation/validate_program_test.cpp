@@ -154,6 +154,11 @@ TEST_F(Program, ReportIsMadeAgainFromItsFolderToTheBit) {
       << other.output;
   std::filesystem::remove(out() + "/scenes/03-ball.sdf");
   EXPECT_EQ(shell(again).exit_code, 65);
+  report["arguments"]["engine"] = 5;
+  std::ofstream(out() + "/report.json") << report;
+  const Outcome odd = shell(again);
+  EXPECT_EQ(odd.exit_code, 65) << odd.output;
+  EXPECT_NE(odd.output.find("report.json: "), std::string::npos) << odd.output;
   std::ofstream(out() + "/report.json") << "{}";
   EXPECT_EQ(shell(again).exit_code, 65);
 }
