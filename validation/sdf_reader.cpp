@@ -232,6 +232,11 @@ class SceneBuilder {
     Vec3 com = vector(inertial.Pose().Pos());
     if (body.is_dynamic() && sdf_extras_.auto_inertia.contains(SdfSurvey::path(*link.Element()))) {
       com = compute_inertia(link, colliders, body);
+    } else if (body.is_dynamic() && link.Element()->HasElement("inertial") && !gives_mass(link)) {
+      scene_.notices.push_back("body '" + name +
+                               "' has an <inertial> without <mass>: 1 kg, SDFormat's default "
+                               "(auto=\"true\" is known in the scene's own file alone, not in an "
+                               "included one)");
     }
     BodyState state;
     state.x = link_pose * com;
@@ -244,6 +249,11 @@ class SceneBuilder {
     scene_.bodies.push_back(body);
     scene_.state.push_back(state);
     return true;
+  }
+
+  static bool gives_mass(const sdf::Link& link) {
+    const auto mass = link.Element()->GetElement("inertial")->FindElement("mass");
+    return mass != nullptr && mass->GetExplicitlySetInFile();
   }
 
   /// <inertial auto="true">: mass and inertia from the shapes and their <density>, that of the

@@ -25,6 +25,14 @@ TEST(SdfReader, InertiaIsTurnedIntoTheLinksAxes) {
   EXPECT_NEAR((scene.bodies[0].inertia - expected).norm(), 0.0, 1e-15);
 }
 
+TEST(SdfReader, InertialWithoutMassIsNamed) {
+  const std::string pose = "<inertial><pose>0.5 0 0 0 0 0</pose>";
+  const Scene scene = read(box_model(pose + "</inertial>"));
+  EXPECT_EQ(scene.bodies[0].mass, 1.0);
+  EXPECT_TRUE(mentions(scene, "'brick' has an <inertial> without <mass>: 1 kg"));
+  EXPECT_FALSE(mentions(read(box_model(pose + "<mass>1</mass></inertial>")), "without <mass>"));
+}
+
 TEST(SdfReader, PosesGoThroughTheFrameGraph) {
   const Scene scene = read("<frame name=\"shelf\"><pose>0 0 2 0 0 0</pose></frame>" +
                            box_model("<pose relative_to=\"peg\">0 0 1 0 0 0</pose>", "",
