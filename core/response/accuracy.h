@@ -31,7 +31,8 @@ class Accuracy {
   double residual_;
 };
 
-/// What the contact problems of one step may cost; islands share it by their rows. Where it runs
+/// What the contact problems of one step may cost; islands share it by their contacts and joint
+/// rows. Where it runs
 /// out the best iterate is applied, with its certificate and status.
 struct StepBudget {
   static constexpr double kNone = std::numeric_limits<double>::infinity();

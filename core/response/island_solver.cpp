@@ -11,11 +11,20 @@ namespace {
 
 constexpr double kRough = 3e-3;   // m/s, see the table
 constexpr double kCasual = 3e-6;  // m/s
-// Tolerances are powers of ten, so that islands share solvers; a residual below this is left to
-// rounding.
-constexpr double kLeastTolerance = 1e-14;
+// What steps_are_exact() aims at at least: a step or two more, while what a rougher answer leaves
+// sets a pile in motion, which costs many.
+constexpr double kExactAim = 1e-8;  // m/s
+// Tolerances are powers of ten, so that islands share solvers. The least is below what rounding
+// leaves of any problem: the answer is then solved to rounding, or not solved.
+constexpr double kLeastTolerance = 1e-20;
 constexpr double kMostTolerance = 0.1;
 constexpr double kRowsOfAUnit = 1000.0;
+constexpr double kMostIterations = 1e9;  // that a budget may allow
+constexpr double kLeastSeconds = 1e-9;   // a solver's limit is > 0
+
+double largest_q(const lcp::Problem& problem) {
+  return problem.size() > 0 ? problem.q.cwiseAbs().maxCoeff() : 0.0;
+}
 
 /// The largest power of ten that keeps residual m/s, as a part of |q|.
 double tolerance_for(double residual, double q_inf) {
@@ -26,6 +35,11 @@ double tolerance_for(double residual, double q_inf) {
 
 bool sweeps(const std::string& name) {
   return name == "nsgs";
+}
+
+/// Solvers whose last steps square the residual.
+bool steps_are_exact(const std::string& name) {
+  return name == "sticking" || name == "cone-interior-point";
 }
 
 /// Work units of one iteration.
@@ -44,14 +58,20 @@ double spent(const std::string& name, const lcp::Result& result) {
 }  // namespace
 
 lcp::Solver& IslandSolver::solver(const std::string& name, double tolerance, int most) {
-  std::unique_ptr<lcp::Solver>& found = solvers_[{name, {tolerance, most}}];
-  if (found == nullptr) {
+  Made& made = made_[{name, tolerance}];
+  if (made.solver == nullptr || made.most != most) {
     lcp::SolverSettings own = settings_.lcp;
     own.tolerance = tolerance;
     own.max_iterations = most;
-    found = lcp::make_solver(name, own);
+    made = {most, lcp::make_solver(name, own)};
   }
-  return *found;
+  return *made.solver;
+}
+
+/// Of an island's problem: that of the dial where it is set.
+double IslandSolver::tolerance(const lcp::Problem& problem) const {
+  return settings_.accuracy ? tolerance_for(settings_.accuracy->residual(), largest_q(problem))
+                            : settings_.lcp.tolerance;
 }
 
 void IslandSolver::solve(const VelocityProblem& velocity, const ContactSet& contacts,
@@ -65,7 +85,7 @@ void IslandSolver::solve(const VelocityProblem& velocity, const ContactSet& cont
     result.solver = "closed form";
     result.certificate = lcp::certify(problem, result.z, &result.w);
     result.status =
-        lcp::judge(result.certificate, settings_.lcp.tolerance, lcp::Status::kNumericalBreakdown);
+        lcp::judge(result.certificate, tolerance(problem), lcp::Status::kNumericalBreakdown);
     if (lcp::is_solved(result.status)) {
       return;
     }
@@ -97,14 +117,11 @@ std::vector<IslandSolver::Try> IslandSolver::choose(const lcp::Problem& problem,
   if (!problem.cones.empty() && residual >= kCasual) {
     const bool rough = residual >= kRough;
     if (is_warm) {
-      chain.push_back({"sticking", "perhaps little slides", rough ? 2 : 6});
+      chain.push_back({"sticking", "perhaps little slides", 6});
     } else {
       chain.push_back({"cone-interior-point", "perhaps little slides", 30});
     }
     chain.push_back({"nsgs", "little accuracy is asked", rough ? 50 : 200});
-    if (rough) {
-      return chain;
-    }
   }
   if (!is_limited) {
     chain.push_back({"auto", "whatever it takes", -1});
@@ -121,66 +138,81 @@ std::vector<IslandSolver::Try> IslandSolver::choose(const lcp::Problem& problem,
   return chain;
 }
 
-/// Tries the chain while the budget lasts; result is the best attempt's.
+lcp::Result IslandSolver::attempt(const lcp::Problem& problem, const std::string& name, int most,
+                                  double seconds, const lcp::Vector* start) {
+  const double asked = tolerance(problem);
+  const double aim =
+      steps_are_exact(name) ? std::min(asked, tolerance_for(kExactAim, largest_q(problem))) : asked;
+  lcp::Result result;
+  if (std::isfinite(seconds)) {  // a solver's time is in its settings
+    lcp::SolverSettings own = settings_.lcp;
+    own.tolerance = aim;
+    own.max_iterations = most;
+    own.time_limit = std::min(own.time_limit, std::max(seconds, kLeastSeconds));
+    lcp::make_solver(name, own)->solve(problem, result, start);
+  } else {
+    solver(name, aim, most).solve(problem, result, start);
+  }
+  if (aim < asked && !lcp::is_solved(result.status)) {
+    result.status = lcp::judge(result.certificate, asked, result.status);
+  }
+  return result;
+}
+
+/// Tries what the budget allows of the chain; result is the best attempt's.
 void IslandSolver::solve_by_dial(const lcp::Problem& problem, const lcp::Vector* start,
                                  const StepBudget& budget, lcp::Result& result, double& work) {
-  const double q_inf = problem.size() > 0 ? problem.q.cwiseAbs().maxCoeff() : 0.0;
-  const double tolerance = tolerance_for(settings_.accuracy->residual(), q_inf);
   const lcp::Deadline deadline(budget.seconds);
+  const auto left = [&] { return budget.seconds - deadline.elapsed_seconds(); };
   const auto merit = [](const lcp::Result& r) { return lcp::BestIterate::merit(r.certificate); };
   std::vector<lcp::Attempt> attempts;
-  bool has_result = false;
-  bool is_short = false;
-  for (const Try& next : choose(problem, start != nullptr, budget.is_limited())) {
-    if (!solver(next.solver, tolerance, next.most).refuses(problem).empty()) {
-      continue;
+  double seconds = 0.0;
+  lcp::Status used_up = lcp::Status::kNotRun;  // what a budget that is used up ends in
+  const auto take = [&](const Try& tried, lcp::Result&& one) {
+    work += spent(tried.solver, one);
+    seconds += one.statistics.solve_seconds;
+    if (one.attempts.empty()) {
+      one.attempts.push_back({tried.solver, tried.reason, one.status,
+                              one.certificate.natural_residual, one.certificate.unit_free_residual,
+                              one.statistics, one.detail});
     }
+    attempts.insert(attempts.end(), one.attempts.begin(), one.attempts.end());
+    const bool solved = lcp::is_solved(one.status);
+    if (result.status == lcp::Status::kNotRun || solved || merit(one) < merit(result)) {
+      result = std::move(one);
+    }
+    return solved;
+  };
+  result = {};
+  for (const Try& next : choose(problem, start != nullptr, budget.is_limited())) {
     const double allowed =
         std::floor((budget.work - work) / unit_cost(next.solver, problem.size()) + 1e-9);
-    const double left = budget.seconds - deadline.elapsed_seconds();
-    is_short = is_short || !(allowed >= 1.0) || !(left > 0.0);
-    // Where nothing is left the start is certified, and that is the answer.
-    if (is_short && has_result) {
-      break;
+    if (!(allowed >= 1.0) || !(left() > 0.0)) {
+      used_up = left() > 0.0 ? lcp::Status::kIterationLimit : lcp::Status::kTimeLimit;
+      continue;  // a cheaper one may still fit
+    }
+    if (!solver(next.solver, tolerance(problem), next.most).refuses(problem).empty()) {
+      continue;
     }
     const int most = !std::isfinite(allowed) ? next.most
-                     : next.most < 0         ? static_cast<int>(std::clamp(allowed, 0.0, 1e9))
-                                             : std::min(next.most, static_cast<int>(allowed));
-    lcp::Result one;
-    if (std::isfinite(budget.seconds)) {  // a solver's time is in its settings
-      lcp::SolverSettings own = settings_.lcp;
-      own.tolerance = tolerance;
-      own.max_iterations = is_short ? 0 : most;
-      own.time_limit = std::max(left, 1e-9);
-      lcp::make_solver(is_short ? "nsgs" : next.solver, own)->solve(problem, one, start);
-    } else {
-      solver(is_short ? "nsgs" : next.solver, tolerance, is_short ? 0 : most)
-          .solve(problem, one, start);
-    }
-    work += spent(next.solver, one);
-    attempts.push_back({next.solver, next.reason, one.status, one.certificate.natural_residual,
-                        one.certificate.unit_free_residual, one.statistics, one.detail});
-    const bool solved = lcp::is_solved(one.status);
-    if (!has_result || solved || merit(one) < merit(result)) {
-      result = std::move(one);
-      has_result = true;
-      if (!solved) {
-        start_ = result.z;
-        start = &start_;
-      }
-    }
-    if (solved) {
+                     : next.most < 0         ? static_cast<int>(std::min(allowed, kMostIterations))
+                                     : static_cast<int>(std::min<double>(next.most, allowed));
+    if (take(next, attempt(problem, next.solver, most, left(), start))) {
       break;
     }
+    start_ = result.z;
+    start = &start_;
   }
-  if (is_short && !lcp::is_solved(result.status)) {
-    result.status =
-        std::isfinite(budget.work) ? lcp::Status::kIterationLimit : lcp::Status::kTimeLimit;
+  if (result.status == lcp::Status::kNotRun) {  // nothing could be tried
+    const Try none{"nsgs", "certifies the start", 0};
+    take(none, attempt(problem, none.solver, none.most, left(), start));
+  }
+  if (used_up != lcp::Status::kNotRun && !lcp::is_solved(result.status)) {
+    result.status = used_up;
     result.detail += (result.detail.empty() ? "" : "; ") + std::string("budget used up");
   }
-  if (result.attempts.empty()) {
-    result.attempts = std::move(attempts);
-  }
+  result.statistics.solve_seconds = seconds;
+  result.attempts = std::move(attempts);
 }
 
 }  // namespace signorini

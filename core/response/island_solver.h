@@ -37,14 +37,14 @@ struct StepMemory {
 /// dial (accuracy set) an island is tried in this order, until its residual is met; each starts
 /// from the best iterate so far:
 ///
-/// - residual >= 3e-3 (preview), friction: sticking (2 sets) where warm, else cone-interior-point
-///   (30 steps); nsgs (50 sweeps)
-/// - residual >= 3e-6 (game), friction: sticking (6 sets) or cone-interior-point (30); nsgs (200);
-///   auto
+/// - residual >= 3e-6 (preview, game), friction: sticking (6 sets) where warm, else
+///   cone-interior-point (30 steps), both to 1e-8 m/s, judged by the residual; nsgs (preview: 50
+///   sweeps, else 200); auto
 /// - else, and without friction: auto
 ///
 /// With a budget auto, which knows none, gives way to interior-point (no friction), alart-curnier
-/// and nsgs.
+/// and nsgs. What the rest of the budget does not pay for is left out; where it pays for nothing
+/// the start is certified, and that is the answer. Result::attempts lists all, auto's too.
 class IslandSolver {
  public:
   explicit IslandSolver(const IslandSettings& settings) : settings_(settings) {}
@@ -62,16 +62,25 @@ class IslandSolver {
     const char* reason;
     int most;  ///< iterations, -1: the solver's own
   };
+  /// One of each name and tolerance is kept, made anew where its iterations change: those that a
+  /// budget allows are any number.
+  struct Made {
+    int most = -1;
+    std::unique_ptr<lcp::Solver> solver;
+  };
   void solve_by_settings(const lcp::Problem& problem, bool has_joints, const lcp::Vector* start,
                          lcp::Result& result);
   void solve_by_dial(const lcp::Problem& problem, const lcp::Vector* start,
                      const StepBudget& budget, lcp::Result& result, double& work);
   [[nodiscard]] std::vector<Try> choose(const lcp::Problem& problem, bool is_warm,
                                         bool is_limited) const;
+  [[nodiscard]] double tolerance(const lcp::Problem& problem) const;
+  [[nodiscard]] lcp::Result attempt(const lcp::Problem& problem, const std::string& name, int most,
+                                    double seconds, const lcp::Vector* start);
   [[nodiscard]] lcp::Solver& solver(const std::string& name, double tolerance, int most);
 
   IslandSettings settings_;
-  std::map<std::pair<std::string, std::pair<double, int>>, std::unique_ptr<lcp::Solver>> solvers_;
+  std::map<std::pair<std::string, double>, Made> made_;
   lcp::Vector start_;
 };
 

@@ -48,7 +48,7 @@ struct StepReport {
   /// Contacts found but left out of the problem: apart, with restitution, and approaching fast.
   int contacts_left_out = 0;
   /// Contacts found, apart, left out because the free motion does not close them, and looked at
-  /// after the solve; and those that had to be put back in, whose step was then solved again.
+  /// after the solve; and those that were put back in, whose step was then solved again.
   int contacts_apart = 0;
   int contacts_put_back = 0;
   int contacts_asleep = 0;     ///< found, of bodies asleep: no rows

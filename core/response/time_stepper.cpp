@@ -146,7 +146,8 @@ class TimeStepper::Selection {
       const bool a_sleeps = sleepers.is_asleep(contact.body_a);
       const bool b_sleeps = sleepers.is_asleep(contact.body_b);
       const bool one_sleeps = a_sleeps || b_sleeps;  // does not act, or it would have woken it
-      const bool keeps_apart = !settings.full_model && contact.gap > kToleratedOverlap &&
+      const bool keeps_apart = !settings.full_model && !touching &&
+                               contact.gap > kToleratedOverlap &&
                                d_dot_free[i] + allowance_[i] > 0.0;
       if ((a_sleeps && (b_sleeps || !bodies[contact.body_b].is_dynamic())) ||
           (b_sleeps && !bodies[contact.body_a].is_dynamic())) {
@@ -186,18 +187,32 @@ class TimeStepper::Selection {
   [[nodiscard]] int about_to_bounce() const { return count(Fate::kAboutToBounce); }
   [[nodiscard]] int asleep() const { return count(Fate::kAsleep); }
 
-  /// Puts back those that close farther than allowed. @return them
-  BodyPairs put_back(const std::vector<Velocity>& velocities, const State& state) {
+  /// Puts back those that close farther than allowed. When it happens again, all of bodies awake:
+  /// in a loose stack, which falls as one, every contact would else wait for the one below it.
+  /// @return them; empty: none closes too far
+  BodyPairs put_back(const std::vector<Velocity>& velocities, const State& state,
+                     const Sleepers& sleepers) {
     constexpr double kRounding = 1e-13;  // m/s
-    BodyPairs violated;
+    std::vector<bool> closes(found_.size());
     for (std::size_t i = 0; i < found_.size(); ++i) {
-      if (fate_[i] == Fate::kApart &&
-          gap_velocity(velocities, state, found_[i]) + allowance_[i] < -kRounding) {
+      closes[i] = fate_[i] == Fate::kApart &&
+                  gap_velocity(velocities, state, found_[i]) + allowance_[i] < -kRounding;
+    }
+    BodyPairs back;
+    if (std::find(closes.begin(), closes.end(), true) == closes.end()) {
+      return back;
+    }
+    for (std::size_t i = 0; i < found_.size(); ++i) {
+      const int a = found_[i].body_a;
+      const int b = found_[i].body_b;
+      const bool awake = !sleepers.is_asleep(a) && !sleepers.is_asleep(b);
+      if (fate_[i] == Fate::kApart && (closes[i] || (has_put_back_ && awake))) {
         fate_[i] = Fate::kInProblem;
-        violated.emplace_back(found_[i].body_a, found_[i].body_b);
+        back.emplace_back(a, b);
       }
     }
-    return violated;
+    has_put_back_ = true;
+    return back;
   }
 
  private:
@@ -209,6 +224,7 @@ class TimeStepper::Selection {
   const ContactSet& found_;
   std::vector<Fate> fate_;
   std::vector<double> allowance_;  // m/s
+  bool has_put_back_ = false;
 };
 
 void TimeStepSettings::validate() const {
@@ -546,13 +562,13 @@ bool TimeStepper::solve_selection(Selection& selection, const Bodies& solved, co
     if (selection.apart() == 0) {
       break;
     }
-    const BodyPairs violated = selection.put_back(velocities_of(bodies_, next), next);
-    if (violated.empty()) {
+    const BodyPairs back = selection.put_back(velocities_of(bodies_, next), next, sleepers_);
+    if (back.empty()) {
       break;
     }
-    report.contacts_put_back += static_cast<int>(violated.size());
+    report.contacts_put_back += static_cast<int>(back.size());
     int woken = 0;
-    for (const auto& [a, b] : violated) {
+    for (const auto& [a, b] : back) {
       woken += sleepers_.wake(a) + sleepers_.wake(b);
     }
     report.bodies_woken += woken;

@@ -92,26 +92,26 @@ inline constexpr double kRestingSpeed = 1e-6;
 /// on both tangents) with the masses and the contacts of the step's start. In turn:
 ///
 /// 1. Find the contacts with gap <= margin; those of the last step's end again if no body moved
-/// since
-///    (forget_contacts()). v* = v- + h M^-1 F in momenta: p* = p + h m g, L* = L,
+///    since (forget_contacts()). v* = v- + h M^-1 F in momenta: p* = p + h m g, L* = L,
 ///    w* = J^-1 L*. Torque-free rotation keeps L exactly; the gyroscopic effect comes from the new
 ///    orientation in the next w: J^-1 is that of the orientation reached, so w* and the contact
 ///    rows have the gyroscopic torque of the rotation so far in them.
 /// 2. allowance = e d'- (d'- from v-, not v*, so that a resting contact does not bounce) where gap
-///    <= touching_tolerance and d'- < -restitution_threshold; else max(gap, 0)/h. Overlap is not
-///    pushed out in the velocities. A contact that is apart, has e > 0 and would be caught by
-///    gap/h would lose its speed before it touches. It is left out and bounces in the next step, if
-///    it approaches faster than restitution_threshold and than the forces make it in one step
-///    (below that it cannot be told from a resting one, and is caught). A bounce then starts up to
-///    h |d'-| deep.
-/// 3. Leave out the contacts that are apart and that the free motion does not close. Solve each
-///    island (contact_islands.h) apart; apply the impulses (driven and fixed bodies take none), and
-///    look at what was left out: contacts that these would close farther than allowed are put back,
-///    and the step is solved again. Then z = 0, w >= 0 solves the rows that were not made. Move x
-///    and q with v+. Without contacts the problem is empty. An island of
-///    one contact is answered in closed form where there is one, and certified like any other:
-///    without friction f = max(0, -(d'* + allowance)/A); with a cone or a box z = 0 where it
-///    separates, -A^-1 q where that sticks within the bounds.
+///    <= touching_tolerance and d'- < -restitution_threshold; else gap/h, 0 where gap <=
+///    kToleratedOverlap (position_projection.h). Overlap is not pushed out in the velocities. A
+///    contact that is apart, has e > 0 and would be caught by gap/h would lose its speed before it
+///    touches. It is left out and bounces in the next step, if it approaches faster than
+///    restitution_threshold and than the forces make it in one step (below that it cannot be told
+///    from a resting one, and is caught). A bounce then starts up to h |d'-| deep.
+/// 3. Leave out the contacts with gap > touching_tolerance that the free motion does not close.
+///    Solve each island (contact_islands.h) apart; apply the impulses (driven and fixed bodies take
+///    none), and look at what was left out: contacts that these would close farther than allowed
+///    are put back, and the step is solved again; when it happens again, all that are apart are
+///    put back. Then z = 0, w >= 0 solves the rows that were not made. Move x and q with v+.
+///    Without contacts the problem is empty. An island of one contact is answered in closed form
+///    where there is one, and certified like any other: without friction
+///    f = max(0, -(d'* + allowance)/A); with a cone or a box z = 0 where it separates, -A^-1 q
+///    where that sticks within the bounds.
 /// 4. Project overlapping positions (position_projection.h). Contacts that leave faster than
 ///    kRestingSpeed are not projected, nor those with restitution that approach faster than
 ///    kRestingSpeed and restitution_threshold: a ball that bounces leaves by itself, and lifting it
@@ -151,7 +151,7 @@ class TimeStepper {
   /// @throws std::invalid_argument for a number out of range
   void wake(int body);
   /// After a change of the finder's own shapes or filters: asks it anew in the next step even if no
-  /// body moved.
+  /// body moved. Bodies asleep stay so: wake() those that the change may set free.
   void forget_contacts() { found_poses_.clear(); }
 
  private:
