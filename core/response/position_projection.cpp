@@ -1,3 +1,4 @@
+#include <signorini/core/model/number_text.h>
 #include <signorini/core/response/assembly.h>
 #include <signorini/core/response/joint_rows.h>
 #include <signorini/core/response/joint_stiffness.h>
@@ -5,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 namespace signorini {
@@ -155,6 +157,10 @@ class Projection {
       joined_ = position_rows(joints_, state_);
       error_ = worst_error(joined_);
     } while ((error_ > kToleratedJointError || length_ < 1.0) && report.passes < kProjectionPasses);
+    if (error_ > kToleratedJointError) {
+      report.detail = "position projection: joints off by up to " + number_text(error_) +
+                      " m or rad after " + std::to_string(report.passes) + " passes";
+    }
   }
 
  private:
@@ -168,7 +174,9 @@ class Projection {
     if (!lcp::is_solved(result.status)) {
       report.detail = "position projection: " + std::string(lcp::to_string(result.status)) +
                       (result.detail.empty() ? "" : " (" + result.detail + ")") +
-                      ", overlaps left as they are";
+                      (report.passes == 0
+                           ? ", overlaps left as they are"
+                           : ", overlaps left as pass " + std::to_string(report.passes) + " did");
       return false;
     }
     l_ = std::move(result.z);

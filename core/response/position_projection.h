@@ -12,14 +12,15 @@ namespace signorini {
 
 /// What a position projection did.
 struct ProjectionReport {
-  /// Of the displacement LCP. Not solved: nothing was moved. kNotRun: there was nothing to do.
+  /// Of the last displacement LCP. Not solved: nothing was moved after pass `passes`. kNotRun:
+  /// there was nothing to do.
   lcp::Status status = lcp::Status::kNotRun;
   /// Mechanical energy gained: m g times the heights, plus the change of kinetic energy that comes
   /// from turning J with L fixed. J.
   double energy_change = 0.0;
   double largest_displacement = 0.0;  ///< of a centre of mass, m
   int passes = 0;                     ///< problems solved
-  std::string detail;                 ///< why it failed, one line; else empty
+  std::string detail;  ///< why it failed, or that joints are still off, one line; else empty
 };
 
 /// Overlaps up to this are left alone, m.

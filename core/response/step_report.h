@@ -41,7 +41,7 @@ struct StepReport {
   std::vector<Vec3> impulses;         ///< whole contact impulses on A, world, N s
   std::vector<int> island_of;         ///< of each of `contacts`, into `islands`
   std::vector<IslandReport> islands;  ///< solved apart, in the order of their first contact
-  std::vector<JointReport> joints;    ///< one a joint of the stepper
+  std::vector<JointReport> joints;    ///< one a joint of the stepper; no impulse while asleep
   int joint_rows = 0;                 ///< of all joints
   int stiffened_bodies = 0;           ///< links under a heavy load: joint_stiffness.h
   int rows = 0;                       ///< of all islands

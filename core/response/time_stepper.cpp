@@ -290,13 +290,24 @@ void TimeStepper::wake(int body) {
   sleepers_.wake(body);
 }
 
+bool TimeStepper::is_asleep(const Joint& joint) const {
+  return sleepers_.is_asleep(joint.body_a) || sleepers_.is_asleep(joint.body_b);
+}
+
 /// The bodies with the inertia that the step's problems have.
 Bodies TimeStepper::solved_bodies(const State& state, StepReport& report) const {
+  report.stiffened_bodies = 0;
   if (!settings_.joint_stiffness || joints_before_.empty()) {
     return bodies_;
   }
+  std::vector<JointReport> before = joints_before_;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    if (is_asleep(joints_[i])) {
+      before[i] = {};
+    }
+  }
   Bodies solved =
-      stiffened(bodies_, state, joints_, joints_before_, settings_.step, report.stiffened_bodies);
+      stiffened(bodies_, state, joints_, before, settings_.step, report.stiffened_bodies);
   if (report.stiffened_bodies > 0) {
     append(std::to_string(report.stiffened_bodies) + " links under a heavy load stiffened",
            report.detail);
@@ -482,9 +493,11 @@ void TimeStepper::project(const Bodies& solved, State& state, StepReport& report
       chosen.push_back(contacts[i]);
     }
   }
+  Joints awake = joints_;
+  std::erase_if(awake, [&](const Joint& joint) { return is_asleep(joint); });
   ProjectionReport projection;
   project_positions(bodies_, chosen, settings_.gravity, *projection_solver_, state, projection,
-                    joints_, &solved);
+                    awake, &solved);
   report.projection_status = projection.status;
   report.energy_change_projection = projection.energy_change;
   append(projection.detail, report.detail);
@@ -497,7 +510,9 @@ void TimeStepper::apply(const Bodies& solved, State& state, StepReport& report) 
   apply_joint_impulses(bodies_, joints_, report.joints, state);
   if (report.stiffened_bodies > 0) {
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
-      set_velocity(bodies_[k], velocity(solved[k], state[k]), state[k]);
+      if (solved[k].inertia != bodies_[k].inertia) {
+        set_velocity(bodies_[k], velocity(solved[k], state[k]), state[k]);
+      }
     }
   }
   report.energy_change_impact = kinetic_energy(bodies_, state) - before;
@@ -532,7 +547,7 @@ void TimeStepper::settle(State& state, StepReport& report) {
   }
   BodyPairs pairs = body_pairs(report.contacts);
   for (const Joint& joint : joints_) {
-    if (!sleepers_.is_asleep(joint.body_a) && !sleepers_.is_asleep(joint.body_b)) {
+    if (!is_asleep(joint)) {
       pairs.emplace_back(joint.body_a, joint.body_b);
     }
   }
@@ -608,15 +623,14 @@ void TimeStepper::step(State& state, StepReport& report) {
       break;
     }
   }
-  const Bodies solved = solved_bodies(state, report);
-  const std::string detail = report.detail;
-
   State next;
+  Bodies solved;
   for (bool done = false; !done;) {
+    report.detail.clear();
+    solved = solved_bodies(state, report);
+    const std::string detail = report.detail;
     std::vector<JointRow> joined = all_joined;
-    std::erase_if(joined, [&](const JointRow& row) {
-      return sleepers_.is_asleep(row.body_a) || sleepers_.is_asleep(row.body_b);
-    });
+    std::erase_if(joined, [&](const JointRow& row) { return is_asleep(joints_[row.joint]); });
     Selection selection(found_, gap_velocities(bodies_, state, found_),
                         gap_velocities(bodies_, free, found_), settings_, bodies_, sleepers_);
     done = solve_selection(selection, solved, state, free, joined, detail, next, report);
@@ -627,7 +641,12 @@ void TimeStepper::step(State& state, StepReport& report) {
   next_memory_.sort();
   std::swap(memory_, next_memory_);
   std::swap(joint_memory_, next_joint_memory_);
-  joints_before_ = report.joints;
+  joints_before_.resize(joints_.size());
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    if (!is_asleep(joints_[i])) {  // else what they did when they fell asleep
+      joints_before_[i] = report.joints[i];
+    }
+  }
   report.seconds.solve = watch.lap();
 
   project(solved, next, report);

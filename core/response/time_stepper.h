@@ -155,6 +155,7 @@ class TimeStepper {
   void forget_contacts() { found_poses_.clear(); }
 
  private:
+  [[nodiscard]] bool is_asleep(const Joint& joint) const;
   [[nodiscard]] Bodies solved_bodies(const State& state, StepReport& report) const;
   [[nodiscard]] State with_forces_applied(const State& start) const;
   [[nodiscard]] FrictionModel friction_model() const;
@@ -198,7 +199,7 @@ class TimeStepper {
   ContactMemory next_memory_;
   JointMemory joint_memory_;
   JointMemory next_joint_memory_;
-  std::vector<JointReport> joints_before_;  // what they did in the last step
+  std::vector<JointReport> joints_before_;  // what they did in their last step awake
 };
 
 }  // namespace signorini

@@ -534,6 +534,74 @@ TEST(Joints, AssembledWronglyTheyCloseWithoutKineticEnergy) {
       [&](int, const StepReport& report) { EXPECT_EQ(report.kinetic_energy, 0.0); });
 }
 
+TEST(Joints, ThatCannotCloseSaySo) {
+  // A bar on two balls that are farther apart than its anchors.
+  for (const auto& [tolerance, said] : {std::pair{1e-4, "m or rad after 20 passes"},
+                                        {1e-8, "iteration limit, overlaps left as pass 1 did"}}) {
+    Mechanism scene;
+    scene.add(fixed_body(), at(Vec3::Zero()));
+    scene.add(box_body(1.0, {0.5, 0.1, 0.1}), at(Vec3::Zero()));
+    scene.join(JointKind::kBall, 1, 0, {-0.5, 0.0, 0.0});
+    scene.join(JointKind::kBall, 1, 0, {0.5, 0.0, 0.0}).anchor_b.x() += 1e-7;
+    NoContacts finder;
+    TimeStepSettings settings;
+    settings.lcp.tolerance = tolerance;
+    TimeStepper stepper(scene.bodies, finder, settings, scene.joints);
+    State state = scene.state;
+    StepReport report;
+    stepper.step(state, report);
+    EXPECT_NEAR(worst_error(report), 5e-8, 1e-10);
+    EXPECT_NE(report.detail.find(said), std::string::npos) << report.detail;
+  }
+}
+
+TEST(Joints, OfBodiesAsleepAreLeftAloneWhereOthersAreClosed) {
+  // Two pendulums: one hangs, off by what is tolerated, and sleeps; the other swings.
+  Mechanism scene = pendulum(JointKind::kHinge, 1.0, 0.0, ball_body(2.0, 0.1));
+  scene.add(ball_body(2.0, 0.1), at({1.0, 3.0, 0.0}));
+  scene.join(JointKind::kHinge, 2, 0, {0.0, 3.0, 0.0}, Vec3::UnitY());
+  scene.joints[0].anchor_b.x() += 0.5 * 1e-10;
+  NoContacts finder;
+  TimeStepSettings settings;
+  settings.sleep.after = 0.05;
+  TimeStepper stepper(scene.bodies, finder, settings, scene.joints);
+  State state = scene.state;
+  run(stepper, state, 30);
+  ASSERT_TRUE(stepper.is_asleep(1));
+  const BodyState asleep = state[1];
+  run(stepper, state, 100, [](int, const StepReport& report) {
+    EXPECT_NE(report.projection_status, lcp::Status::kNotRun);
+    EXPECT_EQ(report.joint_rows, 5);
+  });
+  EXPECT_FALSE(stepper.is_asleep(2));
+  EXPECT_EQ(state[1].x, asleep.x);
+  EXPECT_EQ(state[1].q.coeffs(), asleep.q.coeffs());
+}
+
+TEST(Joints, AChainThatWakesIsAsStiffAsWhenItFellAsleep) {
+  Mechanism scene;
+  scene.add(fixed_body(), at(Vec3::Zero()));
+  for (int i = 1; i <= 10; ++i) {
+    scene.add(box_body(i == 10 ? 1e6 : 1.0, {0.05, 0.05, 0.1}), at({0.0, 0.0, 0.1 - 0.2 * i}));
+    scene.join(JointKind::kBall, i, i - 1, {0.0, 0.0, 0.2 - 0.2 * i});
+  }
+  NoContacts finder;
+  TimeStepSettings settings{.step = 1.0 / 60.0};
+  settings.sleep.after = 0.1;
+  TimeStepper stepper(scene.bodies, finder, settings, scene.joints);
+  State state = scene.state;
+  run(stepper, state, 10);
+  StepReport report;
+  stepper.step(state, report);
+  ASSERT_EQ(report.bodies_asleep, 10);
+  EXPECT_EQ(report.stiffened_bodies, 0);
+  EXPECT_EQ(report.rows, 0);
+  state[10].p.x() = 1e6 * 1e-3;
+  stepper.step(state, report);
+  EXPECT_EQ(report.bodies_woken, 10);
+  EXPECT_GT(report.stiffened_bodies, 0);
+}
+
 TEST(Joints, AnAngleIsTakenAroundTheMiddleOfItsLimits) {
   State state(2);
   Joint joint = joint_at(JointKind::kHinge, 0, 1, state, Vec3::Zero(), Vec3::UnitX());
