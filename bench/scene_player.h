@@ -19,7 +19,8 @@ class ScenePlayer {
   virtual void step() = 0;
   /// Positions and orientations now, one a body; momenta are left out.
   [[nodiscard]] virtual State poses() const = 0;
-  /// The worst residual of the contact problems so far in m/s, or NaN where the engine knows none.
+  /// The worst unit-free residual of the contact problems so far, or NaN where the engine knows
+  /// none.
   [[nodiscard]] virtual double worst_residual() const = 0;
   /// Steps of which a contact problem was not solved (engines that do not say: 0).
   [[nodiscard]] virtual int unsolved_steps() const = 0;

@@ -23,5 +23,17 @@ TEST(StacksStudy, AStackStandsAndIsSolvedAtEveryStep) {
   EXPECT_NE(report.to_csv().find("stack of 12"), std::string::npos);
 }
 
+TEST(StacksStudy, EveryPositionOfTheDialSolvesAPyramid) {
+  for (const char* position : {"preview", "game", "engineering", "reference"}) {
+    TimeStepSettings settings;
+    settings.accuracy = Accuracy::named(position);
+    std::ostringstream out;
+    const StacksReport report = run_stacks_study({}, {pyramid_scene(10, 1.0 / 60.0, 0.5)},
+                                                 {our_stepper(position, settings)}, out);
+    EXPECT_TRUE(report.passed()) << out.str();
+    EXPECT_LT(report.rows.at(0).drift, 1e-8) << position;
+  }
+}
+
 }  // namespace
 }  // namespace signorini::bench
