@@ -33,41 +33,6 @@ void check_allowance(const lcp::VectorRef& allowance, std::size_t contacts) {
   }
 }
 
-bool is_worse(const lcp::Result& a, const lcp::Result& b) {
-  const bool solved = lcp::is_solved(a.status);
-  if (solved != lcp::is_solved(b.status)) {
-    return !solved;
-  }
-  return solved && a.certificate.unit_free_residual > b.certificate.unit_free_residual;
-}
-
-/// Keeps the worse result in `kept`, with the sum of both times.
-void keep_worse(lcp::Result&& result, lcp::Result& kept) {
-  const double seconds =
-      std::max(result.statistics.solve_seconds, 0.0) + std::max(kept.statistics.solve_seconds, 0.0);
-  if (kept.status == lcp::Status::kNotRun || is_worse(result, kept)) {
-    kept = std::move(result);
-  }
-  kept.statistics.solve_seconds = seconds;
-}
-
-IslandReport describe(const ContactIsland& island, const lcp::Problem& problem,
-                      const lcp::Result& result, FrictionModel model) {
-  IslandReport report;
-  report.bodies = static_cast<int>(
-      std::ranges::count_if(island.bodies, [](const Body& body) { return body.is_dynamic(); }));
-  report.contacts = static_cast<int>(island.contacts.size());
-  report.rows = static_cast<int>(problem.size());
-  report.model = (report.contacts == 1 ? "single contact, " : "") +
-                 std::string(report.rows > report.contacts ? to_string(model) : "frictionless");
-  report.solver = result.solver;
-  report.status = result.status;
-  report.unit_free_residual = result.certificate.unit_free_residual;
-  report.residual =
-      report.unit_free_residual * (problem.size() > 0 ? problem.q.cwiseAbs().maxCoeff() : 0.0);
-  return report;
-}
-
 /// An island's impulses into the solution. @return whether they are finite
 bool collect(const VelocityProblem& velocity, const ContactSet& contacts,
              const std::vector<int>& members, const lcp::Result& result,
@@ -137,8 +102,8 @@ void ContactSolver::solve(const Bodies& bodies, const ContactSet& contacts,
   fresh.impulses.assign(contacts.size(), Vec3::Zero());
   fresh.island_of.assign(contacts.size(), -1);
   next_memory_.forget();
+  VelocityProblem velocity;
   for (const ContactIsland& island : contact_islands(bodies, state, contacts, allowance)) {
-    VelocityProblem velocity;
     velocity.assemble(settings_.friction_model, island.bodies, island.state, island.contacts,
                       island.allowance, settings_.pyramid_sides);
     ContactSet members;  // with the body numbers of the scene, which memory knows
@@ -173,9 +138,8 @@ lcp::Vector allowances(const Bodies& bodies, const State& state, const ContactSe
     const double e = contacts[i].material.restitution;
     const bool bounces = contacts[i].gap <= touching_tolerance &&
                          d_dot[static_cast<lcp::Index>(i)] < -restitution_threshold;
-    const double gap = contacts[i].gap > kToleratedOverlap ? contacts[i].gap : 0.0;
     allowance[static_cast<lcp::Index>(i)] =
-        bounces ? e * d_dot[static_cast<lcp::Index>(i)] : gap / h;
+        bounces ? e * d_dot[static_cast<lcp::Index>(i)] : closable_gap(contacts[i].gap) / h;
   }
   return allowance;
 }

@@ -22,6 +22,14 @@ constexpr double kRowsOfAUnit = 1000.0;
 constexpr double kMostIterations = 1e9;  // that a budget may allow
 constexpr double kLeastSeconds = 1e-9;   // a solver's limit is > 0
 
+bool is_worse(const lcp::Result& a, const lcp::Result& b) {
+  const bool solved = lcp::is_solved(a.status);
+  if (solved != lcp::is_solved(b.status)) {
+    return !solved;
+  }
+  return solved && a.certificate.unit_free_residual > b.certificate.unit_free_residual;
+}
+
 double largest_q(const lcp::Problem& problem) {
   return problem.size() > 0 ? problem.q.cwiseAbs().maxCoeff() : 0.0;
 }
@@ -213,6 +221,33 @@ void IslandSolver::solve_by_dial(const lcp::Problem& problem, const lcp::Vector*
   }
   result.statistics.solve_seconds = seconds;
   result.attempts = std::move(attempts);
+}
+
+void keep_worse(lcp::Result&& result, lcp::Result& kept) {
+  const double seconds =
+      std::max(result.statistics.solve_seconds, 0.0) + std::max(kept.statistics.solve_seconds, 0.0);
+  if (kept.status == lcp::Status::kNotRun || is_worse(result, kept)) {
+    kept = std::move(result);
+  }
+  kept.statistics.solve_seconds = seconds;
+}
+
+IslandReport describe(const ContactIsland& island, const lcp::Problem& problem,
+                      const lcp::Result& result, FrictionModel model) {
+  const std::size_t frictionless_rows = island.contacts.size() + island.joints.size();
+  const bool friction = problem.size() > static_cast<lcp::Index>(frictionless_rows);
+  IslandReport report;
+  report.joint_rows = static_cast<int>(island.joints.size());
+  report.bodies = static_cast<int>(std::ranges::count_if(island.bodies, &Body::is_dynamic));
+  report.contacts = static_cast<int>(island.contacts.size());
+  report.rows = static_cast<int>(problem.size());
+  report.model = (report.contacts == 1 && report.joint_rows == 0 ? "single contact, " : "") +
+                 std::string(friction ? to_string(model) : "frictionless");
+  report.solver = result.solver;
+  report.status = result.status;
+  report.unit_free_residual = result.certificate.unit_free_residual;
+  report.residual = report.unit_free_residual * largest_q(problem);
+  return report;
 }
 
 }  // namespace signorini

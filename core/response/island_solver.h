@@ -1,6 +1,8 @@
 #pragma once
 
 #include <signorini/core/response/accuracy.h>
+#include <signorini/core/response/contact_islands.h>
+#include <signorini/core/response/step_report.h>
 #include <signorini/core/response/velocity_problem.h>
 #include <signorini/lcp/result.h>
 #include <signorini/lcp/solver.h>
@@ -83,5 +85,13 @@ class IslandSolver {
   std::map<std::pair<std::string, double>, Made> made_;
   lcp::Vector start_;
 };
+
+/// What was solved for an island, and how well.
+[[nodiscard]] IslandReport describe(const ContactIsland& island, const lcp::Problem& problem,
+                                    const lcp::Result& result, FrictionModel model);
+
+/// Keeps the result of the island that ended worse (not solved before solved, then by the unit-free
+/// residual), with the sum of both times.
+void keep_worse(lcp::Result&& result, lcp::Result& kept);
 
 }  // namespace signorini

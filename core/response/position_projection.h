@@ -26,6 +26,13 @@ struct ProjectionReport {
 /// Overlaps up to this are left alone, m.
 inline constexpr double kToleratedOverlap = 1e-10;
 
+/// The gap that a contact may close in a step, m: none where it is as near to touching as an
+/// overlap that is left alone. A face of which one corner is 1e-12 m off would else rest on the
+/// others.
+[[nodiscard]] inline double closable_gap(double gap) {
+  return gap > kToleratedOverlap ? gap : 0.0;
+}
+
 /// Joints that hold to this are left alone, and passes end there; m or rad.
 inline constexpr double kToleratedJointError = 1e-10;
 

@@ -44,30 +44,6 @@ double deepest_overlap(const ContactSet& contacts) {
   return depth;
 }
 
-/// The gap that a contact may close, m: none where it is as near to touching as an overlap that is
-/// left alone. A face of which one corner is 1e-12 m off would else rest on the others.
-double may_close(double gap) {
-  return gap > kToleratedOverlap ? gap : 0.0;
-}
-
-bool is_worse(const lcp::Result& a, const lcp::Result& b) {
-  const bool solved = lcp::is_solved(a.status);
-  if (solved != lcp::is_solved(b.status)) {
-    return !solved;
-  }
-  return solved && a.certificate.unit_free_residual > b.certificate.unit_free_residual;
-}
-
-/// Keeps the worse result in `kept`, with the sum of both times.
-void keep_worse(lcp::Result&& result, lcp::Result& kept) {
-  const double seconds = std::max(result.statistics.solve_seconds, 0.0);
-  const double before = std::max(kept.statistics.solve_seconds, 0.0);
-  if (kept.status == lcp::Status::kNotRun || is_worse(result, kept)) {
-    kept = std::move(result);
-  }
-  kept.statistics.solve_seconds = before + seconds;
-}
-
 /// The pairs of bodies that joints keep from colliding, smaller number first, sorted.
 BodyPairs never_colliding(const Joints& joints) {
   BodyPairs pairs;
@@ -105,25 +81,6 @@ std::string of_island(const StepReport& report) {
   return number == 1 ? "" : " of island " + std::to_string(number - 1);
 }
 
-IslandReport describe(const ContactIsland& island, const lcp::Problem& problem,
-                      const lcp::Result& result, FrictionModel model) {
-  const std::size_t frictionless_rows = island.contacts.size() + island.joints.size();
-  const bool friction = problem.size() > static_cast<lcp::Index>(frictionless_rows);
-  IslandReport report;
-  report.joint_rows = static_cast<int>(island.joints.size());
-  report.bodies = dynamic_bodies(island.bodies);
-  report.contacts = static_cast<int>(island.contacts.size());
-  report.rows = static_cast<int>(problem.size());
-  report.model = (report.contacts == 1 && report.joint_rows == 0 ? "single contact, " : "") +
-                 std::string(friction ? to_string(model) : "frictionless");
-  report.solver = result.solver;
-  report.status = result.status;
-  report.unit_free_residual = result.certificate.unit_free_residual;
-  report.residual = result.certificate.unit_free_residual *
-                    (problem.size() > 0 ? problem.q.cwiseAbs().maxCoeff() : 0.0);
-  return report;
-}
-
 }  // namespace
 
 /// Which contacts are in a step's problem, and how fast each may close.
@@ -142,7 +99,7 @@ class TimeStepper::Selection {
       const bool would_be_caught = contact.gap + h * d_dot_free[i] < 0.0;
       const bool bounces = touching && classify(d_dot[i], settings.restitution_threshold) ==
                                            ContactClass::kColliding;
-      allowance_[i] = bounces ? e * d_dot[i] : may_close(contact.gap) / h;
+      allowance_[i] = bounces ? e * d_dot[i] : closable_gap(contact.gap) / h;
       const bool a_sleeps = sleepers.is_asleep(contact.body_a);
       const bool b_sleeps = sleepers.is_asleep(contact.body_b);
       const bool one_sleeps = a_sleeps || b_sleeps;  // does not act, or it would have woken it
