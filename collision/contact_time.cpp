@@ -15,6 +15,9 @@ constexpr double kRelativeTolerance = 1e-9;
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kCertifiedIntervals = 100000;
+/// In an overlap: so many intervals with the tolerance alone, then with this part of the depth.
+constexpr int kStrictIntervals = 1000;
+constexpr double kDepthSlack = 0.1;
 constexpr int kSamplesBeyond = 1000;
 /// Above this turn of one frame, radians, the flat-space deviation bounds are not used.
 constexpr double kLargestTurn = 0.5;
@@ -115,6 +118,10 @@ class Search {
     double step = duration_;
     double sampling_step = 0.0;
     for (int intervals = 0; here.time < duration_; ++intervals) {
+      // In an overlap that shrinks the gap is at the level all the time, and steps that prove that
+      // it is never eps below would be as short as eps over the speed.
+      slack_ =
+          intervals < kStrictIntervals ? tolerance_ : std::max(tolerance_, -kDepthSlack * level_);
       if (intervals == kCertifiedIntervals) {
         sampling_step = (duration_ - here.time) / kSamplesBeyond;
       }
@@ -166,12 +173,12 @@ class Search {
   [[nodiscard]] double sure_step(const Moment& here) const {
     const double speed = closing_bound(here, duration_);
     const double rest = duration_ - here.time;
-    const double slack = here.gap - (level_ - tolerance_);
+    const double slack = here.gap - (level_ - slack_);
     return slack >= speed * rest ? rest : slack / speed;
   }
 
   [[nodiscard]] bool is_free(const Moment& t0, const Moment& t1) const {
-    const double floor = level_ - tolerance_;
+    const double floor = level_ - slack_;
     if (t1.gap < floor) {
       return false;
     }
@@ -244,6 +251,7 @@ class Search {
   double radius_b_;
   double rounding_ = 0.0;   ///< of a gap, m
   double tolerance_ = 0.0;  ///< eps
+  double slack_ = 0.0;      ///< an interval is free where the gap stays above level - slack, m
   double level_ = 0.0;
 };
 

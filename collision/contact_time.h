@@ -30,7 +30,9 @@ struct MovingShape {
 /// From an overlapping start all this holds with the largest d at the moments that were looked at
 /// in the place of the largest d so far: overlap that shrinks and grows again between two of them
 /// may pass. What is certain is that d falls nowhere before the returned time more than eps below
-/// what it was at the start.
+/// what it was at the start; after the first 1000 intervals more than eps, or a tenth of the
+/// overlap that was left where an interval began, below the level there (so the work of an overlap
+/// that shrinks does not grow with 1/eps).
 ///
 /// Method: conservative advancement with two certificates that an interval [t0, t1] is free. One
 /// from the speed bound L: d >= (d(t0) + d(t1) - L (t1 - t0)) / 2. One along a fixed direction n

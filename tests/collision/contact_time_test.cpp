@@ -389,6 +389,24 @@ TEST(ContactTime, FromAnOverlapNothingBecomesDeeperUnnoticed) {
   }
 }
 
+// What the collision fuzzer's bytes drew: a flat cone in a ball, and a narrow one in a disk, coming
+// out while they turn.
+TEST(ContactTime, OutOfAnOverlapWhileTurningTakesBoundedSteps) {
+  const auto poses_of = [](const Shape& a, const ConstantVelocityMotion& motion, const Shape& b) {
+    const CountingMotion counting(motion);
+    EXPECT_EQ(contact_time(a, counting, b, kStill, 0.5), std::nullopt);
+    return counting.count;
+  };
+  EXPECT_LT(poses_of(Cone{0.0316, 0.001},
+                     {{{0, 0.03163, 0.03163}, Quat::Identity()}, {0.3163, 0, 0}, {-4, 0, -4}},
+                     Sphere{0.0316}),
+            20000);
+  EXPECT_LT(poses_of(Cone{1.0, 0.0316},
+                     {{{0, 0.516, 0}, Quat::Identity()}, {-1.032, 0, -1.032}, {-2, 2, -4}},
+                     Cone{0.0316, 0.001}),
+            20000);
+}
+
 TEST(ContactTime, BadInputIsRefused) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW((void)contact_time(kCube, kStill, kCube, kStill, -1.0), std::invalid_argument);

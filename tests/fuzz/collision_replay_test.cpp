@@ -11,7 +11,7 @@ namespace {
 TEST(CollisionBytes, KeepEveryPromise) {
   std::mt19937_64 random(20240901);  // NOLINT: fixed, so that a failure comes again
   std::vector<std::uint8_t> bytes;
-  for (int k = 0; k < 60; ++k) {
+  for (int k = 0; k < 500; ++k) {
     bytes.resize(static_cast<std::size_t>(random() % 160));
     const bool plain = k % 2 == 0;
     for (std::uint8_t& byte : bytes) {
