@@ -58,7 +58,8 @@ struct Certificate {
   /// eps max_i (|M||z| + |q|)_i / (1 + |q|_inf), cones eps max(|z_T|, mu |z_N|) / (1 + |q|_inf).
   double natural_floor = kNaN;
   /// max_i |D_i r_i(D_i)| / (D_i |z_i| + (|M||z|)_i + |q_i|): small when z is exact for slightly
-  /// other data.
+  /// other data. NaN where the certificate is a quick one, whose residuals and floors are upper
+  /// bounds (Certifier::certify_quickly()).
   double backward_error = kNaN;
   /// min_i z_i over the rows with lower = 0 and the normal rows of cones (else NaN), caller's
   /// units.
