@@ -25,11 +25,13 @@ foreach(part lcp core collision)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${part} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/signorini
           ${development} FILES_MATCHING PATTERN "*.h")
 endforeach()
-if(TARGET signorini_bullet OR TARGET signorini_bullet_float)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/integrations/bullet
-          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/signorini/integrations
-          ${development} FILES_MATCHING PATTERN "*.h" PATTERN example_scenes EXCLUDE)
-endif()
+foreach(engine bullet dart)
+  if(TARGET signorini_${engine} OR TARGET signorini_${engine}_float)
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/integrations/${engine}
+            DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/signorini/integrations
+            ${development} FILES_MATCHING PATTERN "*.h" PATTERN example_scenes EXCLUDE)
+  endif()
+endforeach()
 if(TARGET signorini_c)  # whose other headers are its own
   install(FILES ${PROJECT_SOURCE_DIR}/c/signorini.h
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/signorini/c ${development})
@@ -47,7 +49,7 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/signorini-config.cmake
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/signorini-config-version.cmake
   COMPATIBILITY SameMinorVersion)
 set(SIGNORINI_FIND_MODULES)
-foreach(package GMP CHOLMOD BulletDouble BulletFloat)
+foreach(package GMP CHOLMOD BulletDouble BulletFloat DartSim)
   list(APPEND SIGNORINI_FIND_MODULES ${PROJECT_SOURCE_DIR}/cmake/Find${package}.cmake)
 endforeach()
 file(COPY ${SIGNORINI_FIND_MODULES} DESTINATION ${PROJECT_BINARY_DIR})
@@ -106,6 +108,7 @@ signorini_pkg_config(bullet "our solvers inside Bullet, double precision"
   REQUIRES signorini-lcp bullet-float64)
 signorini_pkg_config(bullet_float "our solvers inside Bullet, single precision"
   REQUIRES signorini-lcp bullet)
+signorini_pkg_config(dart "our solvers inside DART" REQUIRES signorini-lcp dart)
 signorini_pkg_config(hulls "convex hulls of points" REQUIRES signorini-collision
   PRIVATE_LIBS -lqhull_r)
 signorini_pkg_config(mesh_files "triangles of mesh files" REQUIRES signorini-model

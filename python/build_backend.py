@@ -55,7 +55,7 @@ def _build():
         f"-DSIGNORINI_PYTHON={sys.executable}",
         "-DSIGNORINI_BUILD_PYTHON=ON",
     ]
-    for part in ("BUILD_TESTS", "BUILD_BENCH", "BUILD_VALIDATION", "BUILD_COLLISION", "WITH_BULLET"):
+    for part in ("BUILD_TESTS", "BUILD_BENCH", "BUILD_VALIDATION", "BUILD_COLLISION", "WITH_BULLET", "WITH_DART"):
         options.append(f"-DSIGNORINI_{part}=OFF")
     options += shlex.split(os.environ.get("SIGNORINI_CMAKE_ARGS", ""))
     jobs = os.environ.get("SIGNORINI_JOBS", str(os.cpu_count() or 1))

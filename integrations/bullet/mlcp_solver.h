@@ -1,12 +1,9 @@
 #pragma once
 
-#include <signorini/lcp/solver.h>
+#include <signorini/lcp/boxed_lcp.h>
 
 #include <BulletDynamics/MLCPSolvers/btMLCPSolverInterface.h>
-#include <array>
-#include <cstdint>
-#include <functional>
-#include <memory>
+#include <utility>
 
 namespace signorini::bullet {
 
@@ -25,24 +22,12 @@ namespace signorini::bullet {
 /// friction, per-row cfm and cones too: prefer it.
 class MlcpSolver : public btMLCPSolverInterface {
  public:
-  struct Counters {
-    static constexpr std::size_t kStatuses =
-        static_cast<std::size_t>(lcp::Status::kInvalidInput) + 1;
-    std::int64_t problems = 0;
-    std::array<std::int64_t, kStatuses> by_status{};  ///< indexed by lcp::Status
-
-    [[nodiscard]] std::int64_t count(lcp::Status status) const {
-      return by_status[static_cast<std::size_t>(status)];
-    }
-    [[nodiscard]] std::int64_t not_solved() const {
-      return problems - count(lcp::Status::kSolved) - count(lcp::Status::kSolvedToRounding);
-    }
-  };
-  using NotSolved = std::function<void(const lcp::Result& result)>;
+  using Counters = lcp::BoxedLcpSolver::Counters;
+  using NotSolved = lcp::BoxedLcpSolver::NotSolved;
 
   /// Problems are handed to the solver `auto`. @throws std::invalid_argument for a setting out of
   /// its range.
-  explicit MlcpSolver(const lcp::SolverSettings& settings = {});
+  explicit MlcpSolver(const lcp::SolverSettings& settings = {}) : solver_(settings) {}
 
   /// @param x where to start from, if anything in it is not zero; receives the answer, or the best
   /// iterate
@@ -57,22 +42,15 @@ class MlcpSolver : public btMLCPSolverInterface {
                  int iteration_count, bool use_sparsity = true) override;
 
   /// Of the last problem: status, certificate, statistics and, in double, z = x.
-  [[nodiscard]] const lcp::Result& last_result() const { return result_; }
+  [[nodiscard]] const lcp::Result& last_result() const { return solver_.last_result(); }
   /// Sums since the solver was made. (btMLCPSolver with split impulse asks twice a group.)
-  [[nodiscard]] const Counters& counters() const { return counters_; }
+  [[nodiscard]] const Counters& counters() const { return solver_.counters(); }
   /// Is called for every problem that was not solved. null: nobody.
-  void set_not_solved(NotSolved visitor) { not_solved_ = std::move(visitor); }
+  void set_not_solved(NotSolved visitor) { solver_.set_not_solved(std::move(visitor)); }
 
  private:
-  std::string read(const btMatrixXu& A, const btVectorXu& b, const btVectorXu& lo,
-                   const btVectorXu& hi, const btAlignedObjectArray<int>& limit_dependencies);
-
-  std::unique_ptr<lcp::Solver> solver_;
-  lcp::Problem problem_;
-  lcp::Vector start_;
-  lcp::Result result_;
-  Counters counters_;
-  NotSolved not_solved_;
+  lcp::BoxedLcpSolver solver_;
+  lcp::BoxedLcp rows_;
 };
 
 }  // namespace signorini::bullet
