@@ -57,14 +57,18 @@ void ContactSettings::set_number(std::string_view name, double value) {
     touching_tolerance = not_negative(name, value);
   } else if (name == "restitution_threshold") {
     restitution_threshold = not_negative(name, value);
+  } else if (name == "budget_work") {
+    solver.budget.work = value;
+  } else if (name == "budget_seconds") {
+    solver.budget.seconds = value;
   } else if (name == "tolerance" || name == "max_iterations" || name == "time_limit" ||
              name == "quick_certificate") {
     named.set_number(name, value);
   } else {
     refuse("setting: \"" + std::string(name) +
            "\" is not known; known: tolerance, max_iterations, time_limit, quick_certificate, "
-           "friction_model, "
-           "pyramid_sides, warm_start, touching_tolerance, restitution_threshold");
+           "friction_model, pyramid_sides, warm_start, touching_tolerance, restitution_threshold, "
+           "budget_work, budget_seconds");
   }
 }
 
@@ -73,8 +77,10 @@ void ContactSettings::set_text(std::string_view name, const std::string& value) 
     solver.solver = value;
   } else if (name == "dump") {
     named.set_text(name, value);
+  } else if (name == "accuracy") {
+    solver.accuracy = value.empty() ? std::nullopt : std::optional(Accuracy::named(value));
   } else {
-    refuse("setting: \"" + std::string(name) + "\" is not known; known: solver, dump");
+    refuse("setting: \"" + std::string(name) + "\" is not known; known: solver, dump, accuracy");
   }
 }
 
@@ -89,7 +95,7 @@ static_assert(static_cast<int>(FrictionModel::kPyramid) == SIGNORINI_PYRAMID &&
               static_cast<int>(FrictionModel::kCone) == SIGNORINI_CONE &&
               static_cast<int>(FrictionModel::kBox) == SIGNORINI_BOX);
 static_assert(sizeof(signorini_body) == 192 && sizeof(signorini_contact) == 120 &&
-              sizeof(signorini_island) == 24);
+              sizeof(signorini_island) == 40);
 
 /// The caller's bodies as ours. Momenta follow from the velocities, so the bodies are checked
 /// first.
@@ -341,6 +347,18 @@ signorini_error signorini_contact_result_statistics(const signorini_contact_resu
   });
 }
 
+const char* signorini_contact_result_accuracy(const signorini_contact_result* result) {
+  return result_of(result).solution.accuracy.c_str();
+}
+
+double signorini_contact_result_work(const signorini_contact_result* result) {
+  return result_of(result).solution.work;
+}
+
+int signorini_contact_result_is_deterministic(const signorini_contact_result* result) {
+  return result_of(result).solution.is_deterministic ? 1 : 0;
+}
+
 int64_t signorini_contact_result_island_count(const signorini_contact_result* result) {
   return static_cast<std::int64_t>(result_of(result).solution.islands.size());
 }
@@ -360,7 +378,9 @@ signorini_error signorini_contact_result_island(const signorini_contact_result* 
                               .bodies = one.bodies,
                               .contacts = one.contacts,
                               .rows = one.rows,
-                              .status = to_c(one.status)},
+                              .status = to_c(one.status),
+                              .residual = one.residual,
+                              .work = one.work},
              island, bytes);
   });
 }

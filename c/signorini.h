@@ -354,6 +354,8 @@ typedef struct signorini_island {
   int32_t contacts;          /**< in it */
   int32_t rows;              /**< of its problem */
   signorini_status status;   /**< how its solve ended */
+  double residual;           /**< the unit-free one times |q|, m/s: what the dial speaks of */
+  double work;               /**< with the dial, in the units of "budget_work"; else 0 */
 } signorini_island;
 
 typedef struct signorini_contact_solver signorini_contact_solver; /**< settings and memory */
@@ -368,12 +370,20 @@ SIGNORINI_API void signorini_contact_solver_destroy(signorini_contact_solver* so
  * ("quick_certificate" is 1 by default), and "friction_model" (default SIGNORINI_CONE),
  * "pyramid_sides" (even, >= 4, default 8), "warm_start" (0 or 1, default 1: starts from the
  * impulses of the solve before), "touching_tolerance" (m, >= 0, default 1e-6),
- * "restitution_threshold" (m/s, >= 0, default 0: slower contacts do not bounce). */
+ * "restitution_threshold" (m/s, >= 0, default 0: slower contacts do not bounce). With "accuracy"
+ * set: "budget_work" (>= 0, default inf: what one solve may cost, shared by the islands; a unit is
+ * a thousand rows swept once, a factorisation counts 30 sweeps; the same input gives the same bits)
+ * and "budget_seconds" (s, > 0, default inf: wall time). Where a budget runs out the best iterate
+ * is the result, its status SIGNORINI_ITERATION_LIMIT or SIGNORINI_TIME_LIMIT. */
 SIGNORINI_API signorini_error signorini_contact_solver_set_number(signorini_contact_solver* solver,
                                                                   const char* setting,
                                                                   double value);
 /** "solver": one of signorini_solver_names(), default "auto"; "dump" as
- * signorini_solver_set_text(). */
+ * signorini_solver_set_text(); "accuracy": the dial, one setting for whoever wants no others:
+ * "preview", "game", "engineering", "reference" or a residual in m/s (docs/accuracy-dial.md), which
+ * chooses Coulomb's cone, the solvers and the tolerance, so that "solver", "friction_model",
+ * "tolerance" and "max_iterations" count for nothing; "", the default: off, which a budget
+ * forbids. */
 SIGNORINI_API signorini_error signorini_contact_solver_set_text(signorini_contact_solver* solver,
                                                                 const char* setting,
                                                                 const char* value);
@@ -418,6 +428,13 @@ SIGNORINI_API signorini_error signorini_contact_result_certificate(
 /** Of that island; solve_seconds: of all. */
 SIGNORINI_API signorini_error signorini_contact_result_statistics(
     const signorini_contact_result* result, signorini_statistics* statistics, size_t bytes);
+/** The position of the dial: "game", "1e-06 m/s"; "": it was not used. */
+SIGNORINI_API const char* signorini_contact_result_accuracy(const signorini_contact_result* result);
+/** What was spent, in the units of "budget_work"; 0 without the dial. */
+SIGNORINI_API double signorini_contact_result_work(const signorini_contact_result* result);
+/** 0 where a clock ("budget_seconds", "time_limit") decides when a solver stops, else 1: the same
+ * input then gives the same bits. */
+SIGNORINI_API int signorini_contact_result_is_deterministic(const signorini_contact_result* result);
 /** Into how many islands the contacts fell. */
 SIGNORINI_API int64_t signorini_contact_result_island_count(const signorini_contact_result* result);
 /** The island of every contact. */

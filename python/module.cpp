@@ -254,7 +254,8 @@ py::list islands(const ContactResult& self) {
     check(signorini_contact_result_island(self.get(), k, &i, sizeof i));
     all.append(py::dict("bodies"_a = i.bodies, "contacts"_a = i.contacts, "rows"_a = i.rows,
                         "status"_a = signorini_status_text(i.status),
-                        "unit_free_residual"_a = i.unit_free_residual));
+                        "unit_free_residual"_a = i.unit_free_residual, "residual"_a = i.residual,
+                        "work"_a = i.work));
   }
   return all;
 }
@@ -407,6 +408,14 @@ void bind_contacts(py::module_& module) {
              check(signorini_contact_result_certificate(self.get(), &certificate,
                                                         sizeof certificate));
              return to_dict(certificate);
+           })
+      .def("accuracy",
+           [](const ContactResult& self) { return signorini_contact_result_accuracy(self.get()); })
+      .def("work",
+           [](const ContactResult& self) { return signorini_contact_result_work(self.get()); })
+      .def("is_deterministic",
+           [](const ContactResult& self) {
+             return signorini_contact_result_is_deterministic(self.get()) != 0;
            })
       .def("islands", &islands)
       .def("island_of_contact", [](const ContactResult& self) {

@@ -2,9 +2,10 @@
 #include <signorini/core/response/accuracy.h>
 
 #include <array>
+#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 namespace signorini {
@@ -32,9 +33,10 @@ Accuracy Accuracy::named(const std::string& text) {
       return accuracy;
     }
   }
-  char* end = nullptr;
-  const double residual = std::strtod(text.c_str(), &end);
-  if (text.empty() || end != text.c_str() + text.size()) {
+  double residual = 0.0;  // read alike in every locale
+  const char* end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, residual);
+  if (read.ec != std::errc() || read.ptr != end) {
     throw std::invalid_argument(
         "accuracy: must be preview, game, engineering, reference or a residual in m/s, got '" +
         text + "'");

@@ -45,6 +45,10 @@ struct StepBudget {
 
   static constexpr double kSweepsOfAFactor = 30.0;
 
+  /// What an island gets of it.
+  [[nodiscard]] StepBudget share(double part) const {
+    return {.work = part * work, .seconds = part * seconds};
+  }
   [[nodiscard]] bool is_limited() const { return work < kNone || seconds < kNone; }
   /// @throws std::invalid_argument naming field, value and bound.
   void validate() const;

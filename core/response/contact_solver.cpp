@@ -62,7 +62,7 @@ IslandSettings island_settings(const ContactSolverSettings& settings) {
           .cone_solver = settings.solver,
           .joint_solver = settings.solver,
           .lcp = settings.lcp,
-          .accuracy = std::nullopt,
+          .accuracy = settings.accuracy,
           .warm_start = settings.warm_start};
 }
 
@@ -76,6 +76,11 @@ void ContactSolverSettings::validate() const {
     refuse("friction_model: must be one of the three models, got " +
            std::to_string(static_cast<int>(friction_model)));
   }
+  if (!accuracy && budget.is_limited()) {
+    refuse("budget: must be unlimited without accuracy, got " + number_text(budget.work) +
+           " units, " + number_text(budget.seconds) + " s");
+  }
+  budget.validate();
   lcp.validate();
   (void)lcp::make_solver(solver, lcp);  // a name that is not known is said now
 }
@@ -101,11 +106,15 @@ void ContactSolver::solve(const Bodies& bodies, const ContactSet& contacts,
   fresh.normal_impulses = lcp::Vector::Zero(allowance.size());
   fresh.impulses.assign(contacts.size(), Vec3::Zero());
   fresh.island_of.assign(contacts.size(), -1);
+  fresh.accuracy = settings_.accuracy ? settings_.accuracy->name() : "";
+  fresh.is_deterministic =
+      !std::isfinite(settings_.budget.seconds) && !std::isfinite(settings_.lcp.time_limit);
+  const FrictionModel model = settings_.accuracy ? FrictionModel::kCone : settings_.friction_model;
   next_memory_.forget();
   VelocityProblem velocity;
   for (const ContactIsland& island : contact_islands(bodies, state, contacts, allowance)) {
-    velocity.assemble(settings_.friction_model, island.bodies, island.state, island.contacts,
-                      island.allowance, settings_.pyramid_sides);
+    velocity.assemble(model, island.bodies, island.state, island.contacts, island.allowance,
+                      settings_.pyramid_sides);
     ContactSet members;  // with the body numbers of the scene, which memory knows
     members.reserve(island.members.size());
     for (const int i : island.members) {
@@ -113,9 +122,12 @@ void ContactSolver::solve(const Bodies& bodies, const ContactSet& contacts,
       fresh.island_of[i] = static_cast<int>(fresh.islands.size());
     }
     lcp::Result result;
+    const double part = static_cast<double>(members.size()) / static_cast<double>(contacts.size());
     double work = 0.0;
-    solver_.solve(velocity, members, {}, {memory_, {}}, {}, result, work);
-    fresh.islands.push_back(describe(island, velocity.problem(), result, settings_.friction_model));
+    solver_.solve(velocity, members, {}, {memory_, {}}, settings_.budget.share(part), result, work);
+    fresh.islands.push_back(describe(island, velocity.problem(), result, model));
+    fresh.islands.back().work = work;
+    fresh.work += work;
     if (collect(velocity, members, island.members, result, fresh)) {
       velocity.remember(members, result.z, next_memory_);
     }

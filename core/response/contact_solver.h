@@ -2,6 +2,7 @@
 
 #include <signorini/core/model/body.h>
 #include <signorini/core/model/contact.h>
+#include <signorini/core/response/accuracy.h>
 #include <signorini/core/response/contact_memory.h>
 #include <signorini/core/response/island_solver.h>
 #include <signorini/core/response/step_report.h>
@@ -9,6 +10,7 @@
 #include <signorini/lcp/result.h>
 #include <signorini/lcp/solver.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +23,11 @@ struct ContactSolverSettings {
   /// A name that lcp::make_solver() knows; with kCone it must take cones.
   std::string solver = "auto";
   lcp::SolverSettings lcp = {.tolerance = 1e-8, .quick_certificate = true};
+  /// The dial, one setting for whoever wants no others: chooses model (Coulomb's cone), solvers and
+  /// tolerance for each island (island_solver.h); friction_model, solver, lcp.tolerance and
+  /// lcp.max_iterations then count for nothing.
+  std::optional<Accuracy> accuracy = std::nullopt;
+  StepBudget budget = {};  ///< of one solve; needs accuracy
   /// Starts from the impulses of the solve before: a contact is known again by its bodies and its
   /// feature_id.
   bool warm_start = true;
@@ -42,7 +49,10 @@ struct ContactSolution {
   lcp::Result result;
   /// Change of the kinetic energy by the impulses, J.
   double energy_change = 0.0;
-  std::string detail;  ///< one line: anything beyond the plain scheme
+  std::string accuracy;          ///< position of the dial, empty without
+  double work = 0.0;             ///< of all islands, with the dial, units of StepBudget::work
+  bool is_deterministic = true;  ///< false where a clock decides when a solver stops
+  std::string detail;            ///< one line: anything beyond the plain scheme
 };
 
 /// The velocity-level contact problem for a host with its own bodies, its own collision detection

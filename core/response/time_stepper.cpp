@@ -341,10 +341,8 @@ void TimeStepper::solve_islands(const std::vector<ContactIsland>& islands, const
     answer.velocity.assemble(friction_model(), island.bodies, island.state, island.contacts,
                              island.allowance, settings_.pyramid_sides, island.joints);
     const double share = static_cast<double>(sizes[k]) / contacts_and_joints;
-    solver.solve(
-        answer.velocity, answer.contacts, island.joints, memory,
-        {.work = share * settings_.budget.work, .seconds = share * settings_.budget.seconds},
-        answer.result, answer.work);
+    solver.solve(answer.velocity, answer.contacts, island.joints, memory,
+                 settings_.budget.share(share), answer.result, answer.work);
   });
 
   report.normal_impulses = lcp::Vector::Zero(static_cast<lcp::Index>(report.contacts.size()));

@@ -445,6 +445,8 @@ class Island:
     rows: int
     status: str
     unit_free_residual: float
+    residual: float  # the same times |q|, m/s: what accuracy speaks of
+    work: float  # with accuracy, in the units of budget_work; else 0
 
 
 class ContactResult:
@@ -492,6 +494,22 @@ class ContactResult:
         return Certificate(**self._handle.certificate())
 
     @property
+    def accuracy(self) -> str:
+        """The position of the dial: "game", "1e-06 m/s"; "": it was not used."""
+        return self._handle.accuracy()
+
+    @property
+    def work(self) -> float:
+        """What was spent, in the units of budget_work; 0 without the dial."""
+        return self._handle.work()
+
+    @property
+    def is_deterministic(self) -> bool:
+        """False where a clock decided when a solver stops: the same input need not give the same
+        bits."""
+        return self._handle.is_deterministic()
+
+    @property
     def islands(self) -> list[Island]:
         return [Island(**each) for each in self._handle.islands()]
 
@@ -509,6 +527,12 @@ class ContactSolver:
     friction_model: "cone" (Coulomb's), "pyramid" or "box". touching_tolerance (m) and
     restitution_threshold (m/s): restitution acts at closer, faster contacts. warm_start: from the
     impulses of the solve before, known again by bodies and feature_id.
+
+    accuracy: the dial, one setting for whoever wants no others: "preview", "game", "engineering",
+    "reference" or a residual in m/s (docs/accuracy-dial.md). It chooses model, solvers and tolerance;
+    solver, friction_model, tolerance and max_iterations then count for nothing. With it, budget_work
+    (a unit is a thousand rows swept once; a factorisation counts 30 sweeps) and budget_seconds limit
+    one solve: where they run out the result is the best iterate, and its status says so.
     """
 
     _MODELS = {"pyramid": 0, "cone": 1, "box": 2}
@@ -526,6 +550,9 @@ class ContactSolver:
         max_iterations: int = -1,
         time_limit: float = float("inf"),
         quick_certificate: bool = True,
+        accuracy: str | float | None = None,
+        budget_work: float = float("inf"),
+        budget_seconds: float = float("inf"),
         dump: str = "",
     ) -> None:
         if friction_model not in self._MODELS:
@@ -543,6 +570,10 @@ class ContactSolver:
         self._handle.set_number("max_iterations", max_iterations)
         self._handle.set_number("time_limit", time_limit)
         self._handle.set_number("quick_certificate", quick_certificate)
+        if accuracy is not None:
+            self._handle.set_text("accuracy", str(accuracy))
+        self._handle.set_number("budget_work", budget_work)
+        self._handle.set_number("budget_seconds", budget_seconds)
         if dump:
             self._handle.set_text("dump", dump)
 

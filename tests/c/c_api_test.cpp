@@ -591,6 +591,85 @@ TEST(CContacts, SettingsAreReadAndRefused) {
   expect_refused(scene.solve(), "dantzig");  // takes no cones
 }
 
+/// The ball replaced by a crate that slides and turns on four corners.
+struct CrateOnFloor : BallOnFloor {
+  CrateOnFloor() {
+    bodies[1].angular_velocity[2] = 0.7;
+    contacts.resize(4, contacts[0]);
+    for (int k = 0; k < 4; ++k) {
+      contacts[k].point_a[0] = contacts[k].point_b[0] = k % 2 == 0 ? 0.3 : -0.3;
+      contacts[k].point_a[1] = contacts[k].point_b[1] = k < 2 ? 0.2 : -0.2;
+      contacts[k].feature_id = static_cast<std::uint64_t>(k);
+    }
+  }
+  signorini_island island() {
+    signorini_island filled{};
+    EXPECT_EQ(signorini_contact_result_island(result.get(), 0, &filled, sizeof filled), 0);
+    return filled;
+  }
+};
+
+TEST(CContacts, TheDialMeetsItsResidualAndSaysItsPosition) {
+  for (const auto& [name, residual] :
+       {std::pair{"preview", 1e-2}, {"game", 1e-4}, {"engineering", 1e-8}, {"1e-6", 1e-6}}) {
+    CrateOnFloor scene;
+    ASSERT_EQ(signorini_contact_solver_set_text(scene.solver.get(), "accuracy", name), 0);
+    ASSERT_EQ(scene.solve(), SIGNORINI_OK) << signorini_last_error();
+    const signorini_contact_result* result = scene.result.get();
+    EXPECT_EQ(signorini_contact_result_status(result), SIGNORINI_SOLVED) << name;
+    EXPECT_LE(scene.island().residual, residual * (1.0 + 1e-9));
+    EXPECT_GT(scene.island().work, 0.0);
+    EXPECT_EQ(signorini_contact_result_work(result), scene.island().work);
+    EXPECT_STREQ(signorini_contact_result_accuracy(result),
+                 name == std::string("1e-6") ? "1e-06 m/s" : name);
+    EXPECT_EQ(signorini_contact_result_is_deterministic(result), 1);
+  }
+  CrateOnFloor off;
+  ASSERT_EQ(off.solve(), SIGNORINI_OK);
+  EXPECT_STREQ(signorini_contact_result_accuracy(off.result.get()), "");
+  EXPECT_EQ(signorini_contact_result_work(off.result.get()), 0.0);
+  EXPECT_STREQ(signorini_contact_result_accuracy(nullptr), "");
+  EXPECT_EQ(signorini_contact_result_work(nullptr), 0.0);
+}
+
+TEST(CContacts, ABudgetThatRunsOutIsAStatus) {
+  CrateOnFloor scene;
+  signorini_contact_solver* solver = scene.solver.get();
+  expect_refused(signorini_contact_solver_set_number(solver, "budget_work", 1.0), "accuracy");
+  expect_refused(signorini_contact_solver_set_text(solver, "accuracy", "gaming"), "gaming");
+  expect_refused(signorini_contact_solver_set_text(solver, "accuracy", "-1"), "residual");
+  ASSERT_EQ(signorini_contact_solver_set_text(solver, "accuracy", "engineering"), 0);
+  for (const double bad : {-1.0, kNaN}) {
+    expect_refused(signorini_contact_solver_set_number(solver, "budget_work", bad), "work");
+  }
+  expect_refused(signorini_contact_solver_set_number(solver, "budget_seconds", 0.0), "seconds");
+  ASSERT_EQ(signorini_contact_solver_set_number(solver, "budget_work", 0.0), 0);
+  expect_refused(signorini_contact_solver_set_text(solver, "accuracy", ""), "budget");
+  ASSERT_EQ(scene.solve(), SIGNORINI_OK);
+  EXPECT_EQ(signorini_contact_result_status(scene.result.get()), SIGNORINI_ITERATION_LIMIT);
+  EXPECT_STRNE(signorini_contact_result_detail(scene.result.get()), "");
+  EXPECT_EQ(signorini_contact_result_work(scene.result.get()), 0.0);
+  EXPECT_EQ(signorini_contact_result_is_deterministic(scene.result.get()), 1);
+  ASSERT_EQ(signorini_contact_solver_set_number(solver, "budget_work", kInfinity), 0);
+  ASSERT_EQ(signorini_contact_solver_set_number(solver, "budget_seconds", 1e-9), 0);
+  ASSERT_EQ(scene.solve(), SIGNORINI_OK);
+  EXPECT_EQ(signorini_contact_result_status(scene.result.get()), SIGNORINI_TIME_LIMIT);
+  EXPECT_EQ(signorini_contact_result_is_deterministic(scene.result.get()), 0);
+}
+
+// A program compiled before the struct of an island grew hands in its smaller size.
+TEST(CContacts, AnOlderIslandIsFilledAsFarAsItGoes) {
+  CrateOnFloor scene;
+  ASSERT_EQ(scene.solve(), SIGNORINI_OK);
+  signorini_island island{};
+  island.residual = island.work = -7.0;
+  ASSERT_EQ(signorini_contact_result_island(scene.result.get(), 0, &island, 24), SIGNORINI_OK);
+  EXPECT_EQ(island.contacts, 4);
+  EXPECT_EQ(island.status, SIGNORINI_SOLVED);
+  EXPECT_EQ(island.residual, -7.0);
+  EXPECT_EQ(island.work, -7.0);
+}
+
 TEST(CContacts, BadBodiesContactsAndCountsAreRefused) {
   BallOnFloor scene;
   ASSERT_EQ(scene.solve(), SIGNORINI_OK);

@@ -76,6 +76,65 @@ TEST_P(Solves, GiveTheTimeSteppersImpulsesToTheBit) {
   }
 }
 
+TEST(ContactSolver, TheDialIsTheTimeSteppers) {
+  for (const char* name : {"preview", "game", "engineering", "reference", "1e-6"}) {
+    SCOPED_TRACE(name);
+    const Accuracy accuracy = Accuracy::named(name);
+    Stack stack;
+    TimeStepSettings settings{.step = kStep};
+    settings.accuracy = accuracy;
+    TimeStepper stepper(stack.bodies, stack.finder, settings);
+    ContactSolver solver({.friction_model = FrictionModel::kBox, .accuracy = accuracy});
+    StepReport report;
+    ContactSolution solution;
+    for (int i = 0; i < 5; ++i) {
+      ContactSet contacts;
+      stack.finder.find(stack.state, 0.01, contacts);
+      State after = stack.with_weight();
+      solver.solve(stack.bodies, contacts,
+                   allowances(stack.bodies, stack.state, contacts, kStep, 1e-6, 0.0), after,
+                   solution);
+      stepper.step(stack.state, report);
+      ASSERT_EQ(solution.impulses, report.impulses) << "step " << i;
+      EXPECT_EQ(solution.work, report.work);
+      EXPECT_TRUE(lcp::is_solved(solution.status));
+      for (const IslandReport& island : solution.islands) {
+        EXPECT_TRUE(island.status != lcp::Status::kSolved ||
+                    island.residual <= accuracy.residual() * (1.0 + 1e-9));
+      }
+    }
+    EXPECT_EQ(solution.accuracy, accuracy.name());
+    EXPECT_TRUE(solution.is_deterministic);
+  }
+}
+
+TEST(ContactSolver, ABudgetIsKeptAndWhatItDidNotPayForIsSaid) {
+  Stack stack;
+  ContactSet contacts;
+  stack.finder.find(stack.state, 0.01, contacts);
+  const auto solve = [&](const StepBudget& budget, ContactSolution& solution) {
+    ContactSolver solver({.accuracy = Accuracy::engineering(), .budget = budget});
+    State after = stack.with_weight();
+    solver.solve(stack.bodies, contacts, lcp::Vector::Zero(contacts.size()), after, solution);
+  };
+  ContactSolution solution;
+  solve({.work = 1.0}, solution);  // some sweeps, not one factorisation
+  EXPECT_EQ(solution.status, lcp::Status::kIterationLimit);
+  EXPECT_NE(solution.detail.find("best iterate applied"), std::string::npos) << solution.detail;
+  EXPECT_NE(solution.result.detail.find("budget used up"), std::string::npos);
+  EXPECT_GT(solution.work, 0.5);
+  EXPECT_LE(solution.work, 1.0 + 1e-9);
+  EXPECT_TRUE(solution.is_deterministic);
+  solve({.work = 1000.0}, solution);
+  EXPECT_EQ(solution.status, lcp::Status::kSolved);
+  solve({.seconds = 1e-9}, solution);
+  EXPECT_EQ(solution.status, lcp::Status::kTimeLimit);
+  EXPECT_FALSE(solution.is_deterministic);
+  EXPECT_THROW(ContactSolver({.budget = {.work = 1.0}}), std::invalid_argument);
+  EXPECT_THROW(ContactSolver({.accuracy = Accuracy::game(), .budget = {.work = -1.0}}),
+               std::invalid_argument);
+}
+
 TEST(ContactSolver, AllowancesLetGapsCloseAndBallsBounce) {
   const Bodies bodies{fixed_body(), ball_body(1.0, 0.5)};
   State state{at(Vec3::Zero()), at(Vec3(0.0, 0.0, 0.5))};

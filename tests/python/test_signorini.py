@@ -210,13 +210,14 @@ class Refuses(unittest.TestCase):
 
 
 class Contacts(unittest.TestCase):
-    def test_a_crate_is_braked_by_friction(self):
-        h = 0.01
+    H = 0.01
+
+    def crate(self):
         bodies = signorini.make_bodies(2)
         bodies[0]["kind"] = 2
         bodies[1]["mass"] = 10.0
         bodies[1]["position"] = (0.0, 0.0, 0.5)
-        bodies[1]["linear_velocity"] = (1.0, 0.0, -9.81 * h)
+        bodies[1]["linear_velocity"] = (1.0, 0.0, -9.81 * self.H)
         contacts = signorini.make_contacts(4)
         contacts["body_a"] = 1
         contacts["body_b"] = 0
@@ -225,6 +226,11 @@ class Contacts(unittest.TestCase):
         contacts["feature_id"] = range(4)
         corners = [(-0.5, -0.5, 0), (0.5, -0.5, 0), (-0.5, 0.5, 0), (0.5, 0.5, 0)]
         contacts["point_a"] = contacts["point_b"] = corners
+        return bodies, contacts
+
+    def test_a_crate_is_braked_by_friction(self):
+        h = self.H
+        bodies, contacts = self.crate()
         for model in ("cone", "pyramid", "box"):
             solver = signorini.ContactSolver(friction_model=model)
             result = solver.solve(h, bodies, contacts)
@@ -240,6 +246,33 @@ class Contacts(unittest.TestCase):
         empty = solver.solve(h, bodies, contacts[:0])
         self.assertTrue(empty.is_solved)
         np.testing.assert_array_equal(empty.velocities[1][:3], bodies[1]["linear_velocity"])
+
+    def test_the_dial_meets_its_residual(self):
+        bodies, contacts = self.crate()
+        for accuracy, residual in (("preview", 1e-2), ("game", 1e-4), (1e-6, 1e-6)):
+            result = signorini.ContactSolver(accuracy=accuracy).solve(self.H, bodies, contacts)
+            self.assertEqual(result.status, "solved")
+            self.assertLessEqual(result.islands[0].residual, residual * (1 + 1e-9))
+            self.assertGreater(result.work, 0.0)
+            self.assertEqual(result.work, result.islands[0].work)
+            self.assertEqual(result.accuracy, accuracy if accuracy != 1e-6 else "1e-06 m/s")
+            self.assertTrue(result.is_deterministic)
+        self.assertEqual(signorini.ContactSolver().solve(self.H, bodies, contacts).accuracy, "")
+
+    def test_a_budget_that_runs_out_is_a_status(self):
+        bodies, contacts = self.crate()
+        solver = signorini.ContactSolver(accuracy="engineering", budget_work=0.0)
+        result = solver.solve(self.H, bodies, contacts)
+        self.assertEqual(result.status, "iteration limit")
+        self.assertNotEqual(result.detail, "")
+        solver = signorini.ContactSolver(accuracy="engineering", budget_seconds=1e-9)
+        result = solver.solve(self.H, bodies, contacts)
+        self.assertEqual(result.status, "time limit")
+        self.assertFalse(result.is_deterministic)
+        for bad in ({"budget_work": 1.0}, {"accuracy": "gaming"}, {"accuracy": -1.0},
+                    {"accuracy": "game", "budget_seconds": 0.0}):
+            with self.assertRaises(ValueError):
+                signorini.ContactSolver(**bad)
 
 
 class Threads(unittest.TestCase):
