@@ -4,6 +4,8 @@
     blocks.py run PROGRAM LANGUAGE FILE.md...        runs those that have a main; compares what they print
     blocks.py python FILE.md...                      runs the Python blocks
     blocks.py cmake FOLDER PREFIX SOURCE FILE.md...  configures a project with each CMake block
+    blocks.py programs FOLDER PREFIX FLAGS FILE.md...  builds every C++ and C program as its reader would,
+                                                     alone in an empty folder, against what is installed
 
 A block that has a main is run. One that is a fragment of a function's inside says above what it needs:
 
@@ -12,21 +14,27 @@ A block that has a main is run. One that is a fragment of a function's inside sa
 and one whose output is documented says it behind (white space counts as one blank):
 
     <!-- prints: solved: z = 1 -->
+
+A CMake block that is a whole CMakeLists.txt has <!-- whole --> above it. The first of them, and the first line
+`cc my.c ...`, both of the first page, are how programs are built.
 """
 
-import io
 import contextlib
+import io
+import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 
 BLOCK = re.compile(
-    r"(?:<!-- within: (?P<within>[^\n]*) -->\n)?"
+    r"(?:<!-- within: (?P<within>[^\n]*) -->\n)?(?P<whole><!-- whole -->\n)?"
     r"```(?P<language>[a-z]+)\n(?P<code>.*?)^```\n"
     r"(?:\n?<!-- prints: (?P<prints>[^\n]*) -->)?",
     re.DOTALL | re.MULTILINE,
 )
+MOST_LINES = 30  # of a first program
 MAIN = re.compile(r"\bint main\((?:void)?\)")
 
 
@@ -107,14 +115,60 @@ def configure(folder, prefix, source, files):
     for number, (file, line, block) in enumerate(blocks("cmake", files)):
         project = pathlib.Path(folder) / str(number)
         project.mkdir(parents=True, exist_ok=True)
-        (project / "engine.cpp").write_text("int main() {}\n", encoding="utf-8")
-        (project / "CMakeLists.txt").write_text(
+        (project / "main.cpp").write_text("int main() {}\n", encoding="utf-8")
+        head = "" if block["whole"] else (
             "cmake_minimum_required(VERSION 3.25)\nproject(engine LANGUAGES C CXX)\n"
-            f"add_executable(my_engine engine.cpp)\n{block['code']}", encoding="utf-8")
+            "add_executable(my_engine main.cpp)\n")
+        (project / "CMakeLists.txt").write_text(head + block["code"], encoding="utf-8")
         subprocess.run(
             ["cmake", "-S", project, "-B", project / "build", f"-DCMAKE_PREFIX_PATH={prefix}",
              f"-DSIGNORINI_SOURCE={source}"], check=True, stdout=subprocess.DEVNULL)
         print(f"{file}:{line}: configures")
+
+
+def build_by_cmake(folder, prefix, flags, code, lists):
+    """With the documented CMakeLists.txt; its component is the one whose header the program includes."""
+    part = re.search(r"#include <signorini/(?:integrations/)?(\w+)/", code)[1]
+    (folder / "main.cpp").write_text(code, encoding="utf-8")
+    (folder / "CMakeLists.txt").write_text(
+        lists.replace("COMPONENTS lcp", f"COMPONENTS {part}").replace("::lcp", f"::{part}"),
+        encoding="utf-8")
+    options = [f"-DCMAKE_PREFIX_PATH={prefix}", f"-DCMAKE_CXX_FLAGS={flags}"]
+    subprocess.run(["cmake", "-S", ".", "-B", "build", *options], cwd=folder, check=True,
+                   stdout=subprocess.DEVNULL)
+    subprocess.run(["cmake", "--build", "build"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+    return subprocess.run(["build/my_engine"], cwd=folder, capture_output=True, text=True)
+
+
+def build_by_hand(folder, prefix, flags, code, line):
+    """With the documented line for a shell."""
+    (folder / "my.c").write_text(code, encoding="utf-8")
+    if not list(pathlib.Path(prefix).rglob("libsignorini-c.a")):
+        line = line.replace(" --static", "")
+    places = ":".join(str(path) for path in pathlib.Path(prefix).rglob("pkgconfig"))
+    return subprocess.run(line.replace("cc my.c", f"cc {flags} my.c"), shell=True, cwd=folder,
+                          capture_output=True, text=True,
+                          env={**os.environ, "PKG_CONFIG_PATH": places})
+
+
+def programs(folder, prefix, flags, files):
+    first_page = pathlib.Path(files[0]).read_text(encoding="utf-8")
+    lists = next(block["code"] for _, _, block in blocks("cmake", files[:1]) if block["whole"])
+    line = re.search(r"`(cc my\.c [^`]*)`", first_page)[1]
+    for language, build, how in (("cpp", build_by_cmake, lists), ("c", build_by_hand, line)):
+        found = [each for each in blocks(language, files) if MAIN.search(each[2]["code"])]
+        if not found:
+            sys.exit(f"no program in {language} on these pages")
+        for number, (file, at, block) in enumerate(found):
+            place = pathlib.Path(folder) / f"{language}-{number}"
+            shutil.rmtree(place, ignore_errors=True)
+            place.mkdir(parents=True)
+            if block["code"].count("\n") > MOST_LINES:
+                sys.exit(f"{file}:{at}: more than {MOST_LINES} lines")
+            done = build(place, prefix, flags, block["code"], how)
+            if done.returncode != 0:
+                sys.exit(f"{file}:{at}: exit code {done.returncode}\n{done.stdout}{done.stderr}")
+            judge(file, at, block["prints"], done.stdout)
 
 
 if __name__ == "__main__":
@@ -125,6 +179,8 @@ if __name__ == "__main__":
         run(arguments[0], arguments[1], arguments[2:])
     elif command == "python":
         run_python(arguments)
+    elif command == "programs":
+        programs(arguments[0], arguments[1], arguments[2], arguments[3:])
     elif command == "cmake":
         configure(arguments[0], arguments[1], arguments[2], arguments[3:])
     else:
