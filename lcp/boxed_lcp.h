@@ -36,6 +36,7 @@ struct BoxedLcp {
 /// at once.
 class BoxedLcpSolver {
  public:
+  /// How many problems ended how.
   struct Counters {
     static constexpr std::size_t kStatuses = static_cast<std::size_t>(Status::kInvalidInput) + 1;
     std::int64_t problems = 0;
@@ -48,6 +49,7 @@ class BoxedLcpSolver {
       return problems - count(Status::kSolved) - count(Status::kSolvedToRounding);
     }
   };
+  /// Who is told of a problem that was not solved.
   using NotSolved = std::function<void(const Result& result)>;
 
   /// Problems are handed to the solver `auto`. @throws std::invalid_argument for a setting out of

@@ -25,6 +25,7 @@ class Accuracy {
   /// "game", or "1e-06 m/s".
   [[nodiscard]] std::string name() const;
 
+  /// The same residual.
   friend bool operator==(const Accuracy&, const Accuracy&) = default;
 
  private:

@@ -38,6 +38,7 @@ namespace signorini::bullet {
 /// One object for one thread, as Bullet's own; btConstraintSolverPoolMt takes several.
 class ConstraintSolver : public btSequentialImpulseConstraintSolver {
  public:
+  /// Who is told of an island that was not solved.
   using NotSolved = std::function<void(const IslandReport& island)>;
 
   /// @throws std::invalid_argument for a setting out of its range.

@@ -22,7 +22,9 @@ namespace signorini::bullet {
 /// friction, per-row cfm and cones too: prefer it.
 class MlcpSolver : public btMLCPSolverInterface {
  public:
+  /// How many problems ended how.
   using Counters = lcp::BoxedLcpSolver::Counters;
+  /// Who is told of a problem that was not solved.
   using NotSolved = lcp::BoxedLcpSolver::NotSolved;
 
   /// Problems are handed to the solver `auto`. @throws std::invalid_argument for a setting out of
@@ -31,7 +33,7 @@ class MlcpSolver : public btMLCPSolverInterface {
 
   /// @param x where to start from, if anything in it is not zero; receives the answer, or the best
   /// iterate
-  /// @param iteration_count @param use_sparsity not used
+  /// @param iteration_count,use_sparsity not used
   /// @return true only if last_result() is solved: the certificate of x, recomputed from A, b, lo,
   /// hi and the dependencies in double (before a float build rounds x), meets the tolerance.
   /// Otherwise btMLCPSolver falls back to sequential impulses and counts it in getNumFallbacks().

@@ -28,7 +28,9 @@ namespace signorini::dartsim {
 /// Not for two threads at once.
 class BoxedLcpSolver : public ::dart::constraint::BoxedLcpSolver {
  public:
+  /// How many problems ended how.
   using Counters = lcp::BoxedLcpSolver::Counters;
+  /// Who is told of a problem that was not solved.
   using NotSolved = lcp::BoxedLcpSolver::NotSolved;
 
   /// Problems are handed to the solver `auto`. @throws std::invalid_argument for a setting out of
@@ -41,11 +43,12 @@ class BoxedLcpSolver : public ::dart::constraint::BoxedLcpSolver {
 
   /// As DART calls it; A, b, lo, hi and findex are left as they are.
   ///
-  /// @param n rows @param A n rows, each padded to a multiple of four numbers (n = 1: not padded)
+  /// @param n rows
+  /// @param A n rows, each padded to a multiple of four numbers (n = 1: not padded)
   /// @param x where to start from, if anything in it is not zero; receives the answer, or the best
   /// iterate; 0 after kInvalidInput
   /// @param nub the first nub rows are unbounded, whatever lo and hi say
-  /// @param lo, hi bounds, -+infinity allowed; with a findex hi is mu, and lo must be -mu
+  /// @param lo,hi bounds, -+infinity allowed; with a findex hi is mu, and lo must be -mu
   /// @param findex the normal row of a friction row; negative or the row itself: none
   /// @param early_termination not used: every problem is solved as far as it can be
   /// @return true only if last_result() is solved: the certificate of x, recomputed from A, b, lo,
