@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <map>
 #include <ode/ode.h>
 #include <vector>
 
@@ -43,7 +44,7 @@ class World {
     dBodySetMass(body, &mass);
     dBodySetPosition(body, x, 0, height);
     dGeomSetBody(dCreateBox(space_, kSide, kSide, kSide), body);
-    dBodySetData(body, reinterpret_cast<void*>(ode_.size()));  // its number
+    number_of_[body] = static_cast<int>(ode_.size());
     ode_.push_back(body);
     signorini::Body ours;
     ours.mass = mass.mass;
@@ -87,8 +88,8 @@ class World {
     const int count = dCollide(a, b, 8, found, sizeof found[0]);
     for (int i = 0; i < count; ++i) {
       signorini::Contact contact;
-      contact.body_a = number(dGeomGetBody(found[i].g1));
-      contact.body_b = number(dGeomGetBody(found[i].g2));
+      contact.body_a = number_of_.at(dGeomGetBody(found[i].g1));
+      contact.body_b = number_of_.at(dGeomGetBody(found[i].g2));
       contact.normal = vec3(found[i].normal);  // into the first body: from B to A
       contact.gap = -found[i].depth;
       contact.point_a = vec3(found[i].pos);
@@ -98,14 +99,11 @@ class World {
       contacts_.push_back(contact);
     }
   }
-  static int number(dBodyID body) {
-    return body == nullptr ? 0
-                           : static_cast<int>(reinterpret_cast<std::intptr_t>(dBodyGetData(body)));
-  }
 
   dWorldID world_;
   dSpaceID space_;
   std::vector<dBodyID> ode_;
+  std::map<dBodyID, int> number_of_{{nullptr, 0}};  // into bodies_
   signorini::Bodies bodies_;
   signorini::ContactSet contacts_;
   signorini::ContactSolver solver_;
