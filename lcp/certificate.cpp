@@ -22,6 +22,9 @@ constexpr double kRoundingCeiling = 1e-5;
 constexpr double kOwnRounding = 0x1p-10;
 // A numerator above this part of |M||z| is not 0, whatever rounding did.
 constexpr double kHidden = 0x1p-40;
+// A force this part of its limit inside the cone is none that rounding z could move to the
+// boundary.
+constexpr long double kFarInside = 1e-3L;
 constexpr long double kWiden = 1.0L + 0x1p-58L;  // more than rounding a cone's norms may cost
 
 Certificate refuse() {
@@ -166,7 +169,11 @@ Certifier::Measure Certifier::measure_cone(const Problem& problem, std::size_t c
   // z - P_K(x), x = z - w / scale, by Moreau as w / scale + (x - P_K(x)): nothing of w is lost
   // beside a z that is far larger.
   const long double tangential = tangential_norm(d, z);
-  const auto step = [&](long double scale) {
+  struct Step {
+    long double length;
+    bool is_far_inside;  // K, from x on: rounding z moves no projection
+  };
+  const auto step = [&](long double scale) -> Step {
     std::array<long double, 3> moved{};
     std::array<long double, 3> rest{};
     long double across = 0.0L;  // |x_T| - |z_T|, times their sum
@@ -190,26 +197,33 @@ Certifier::Measure Certifier::measure_cone(const Problem& problem, std::size_t c
         }
       }
     }
-    return std::hypot(rest[0], tangential_norm(d, rest.data()));
+    return {std::hypot(rest[0], tangential_norm(d, rest.data())),
+            outside < -0.5L * kFarInside * mu * z[0]};
   };
   const long double length = std::hypot(z[0], tangential);
-  const auto residual = [&](long double scale) {
+  const auto residual = [&](const Step& taken, long double scale) {
     const long double normal = is_coulomb ? std::abs(std::min(length, w_normal / scale)) : 0.0L;
-    return std::max(step(scale), normal);
+    return std::max(taken.length, normal);
   };
   const long double scale = scale_[first];
-  sum.natural = residual(1.0L);
-  sum.unit_free = scale * residual(scale);
+  const Step natural = step(1.0L);
+  const Step scaled = step(scale);
+  sum.natural = residual(natural, 1.0L);
+  sum.unit_free = scale * residual(scaled, scale);
   long double size = 0.0L;
+  long double slip_size = 0.0L;
   long double z_size = 0.0L;
   for (int k = 0; k < d; ++k) {
     size = std::max(size, size_[first + k]);
+    slip_size = k > 0 ? std::max(slip_size, size_[first + k]) : 0.0L;
     z_size = std::max(z_size, std::abs(z[k]));
     sum.z_dot_w += z[k] * w[k];
   }
   sum.backward = sum.unit_free > 0.0L ? sum.unit_free / (scale * z_size + size) : 0.0L;
-  sum.boundary = std::max(tangential, mu * std::abs(z[0]));
-  sum.scaled_boundary = scale * sum.boundary;
+  const long double boundary = std::max(tangential, mu * std::abs(z[0]));
+  const long double in_w_tilde = is_coulomb ? mu * slip_size : 0.0L;
+  sum.boundary = natural.is_far_inside ? in_w_tilde : boundary;
+  sum.scaled_boundary = scaled.is_far_inside ? in_w_tilde : scale * boundary;
   sum.min_z = static_cast<double>(z[0]);
   sum.cone_violation = static_cast<double>(cone_violation(mu, d, z));
   return sum;
@@ -408,7 +422,7 @@ Certifier::Measure Certifier::bound_group(const Problem& problem, int first, int
     is_inside = z[0] >= bounds_[first].lower && z[0] <= bounds_[first].upper;
   } else {
     const long double mu = problem.cones[cone].coefficient;
-    const long double limit = 0.999L * mu * z[0];  // nearer to the boundary: measured
+    const long double limit = (1.0L - kFarInside) * mu * z[0];  // nearer: measured
     is_inside = z[0] > 0.0L && tangential <= limit * limit;
     if (problem.friction_law == FrictionLaw::kCoulomb) {
       w_tilde += mu * std::sqrt(slip);
@@ -438,6 +452,11 @@ Certifier::Measure Certifier::bound_group(const Problem& problem, int first, int
   }
   if (cone >= 0) {
     measure.cone_violation = 0.0;
+    if (problem.friction_law == FrictionLaw::kCoulomb) {
+      const long double slip_size = *std::max_element(&size_[first + 1], &size_[first] + d);
+      measure.boundary = problem.cones[cone].coefficient * slip_size;
+      measure.scaled_boundary = measure.boundary;
+    }
   }
   return measure;
 }

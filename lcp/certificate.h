@@ -52,10 +52,11 @@ struct Certificate {
   double unit_free_residual = kNaN;
   /// eps max_i (|M||z| + |q|)_i / |q|_inf: what rounding z and w to double costs the unit-free
   /// residual. No solver that returns doubles can be asked for much less. Cones add
-  /// eps D_c max(|z_T|, mu |z_N|) / |q|_inf.
+  /// eps D_c max(|z_T|, mu |z_N|) / |q|_inf; those far inside mu eps (|M||z| + |q|)_T / |q|_inf.
   double rounding_floor = kNaN;
   /// The same rounding error in the terms of the natural residual:
-  /// eps max_i (|M||z| + |q|)_i / (1 + |q|_inf), cones eps max(|z_T|, mu |z_N|) / (1 + |q|_inf).
+  /// eps max_i (|M||z| + |q|)_i / (1 + |q|_inf), cones eps max(|z_T|, mu |z_N|) / (1 + |q|_inf);
+  /// those far inside (by a thousandth of mu z_N or so): only what mu |w_T| costs, as above.
   double natural_floor = kNaN;
   /// max_i |D_i r_i(D_i)| / (D_i |z_i| + (|M||z|)_i + |q_i|): small when z is exact for slightly
   /// other data. NaN where the certificate is a quick one, whose residuals and floors are upper

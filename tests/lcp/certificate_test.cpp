@@ -274,6 +274,37 @@ TEST(Certificate, LosesNoNormalVelocityBesideALargeImpulse) {
   EXPECT_NEAR(c.unit_free_residual, 2e-8, 1e-12);
 }
 
+TEST(Certificate, RoundingALargeForceFarInsideItsConeCostsNothing) {
+  // 1e18 kg that stick: the force has steps of 32 N s, the velocity those of 1e-17 m/s.
+  Problem problem;
+  problem.M = Matrix(1e-18 * Matrix::Identity(3, 3));
+  problem.q = Vector{{-0.16, 0.02, 0.0}};
+  problem.cones = {{.normal_row = 0, .dimension = 3, .coefficient = 0.5}};
+  const Vector z = -1e18 * problem.q;
+  EXPECT_EQ(judge(certify(problem, z), 1e-12, Status::kStalled), Status::kSolved);
+  Certifier certifier;
+  EXPECT_EQ(judge(certifier.certify_quickly(problem, z, 1e-12), 1e-12, Status::kStalled),
+            Status::kSolved);
+  problem.q[1] = 0.08;  // at the boundary rounding decides
+  EXPECT_NE(judge(certify(problem, Vector(-1e18 * problem.q)), 1e-12, Status::kStalled),
+            Status::kSolved);
+}
+
+// w~ = w_N + mu |w_T|: rounding w_T costs mu times as much, also of a force far inside the cone.
+TEST(Certificate, KnowsWhatAHugeMuMakesOfRounding) {
+  Problem problem;
+  problem.M = Matrix(Matrix::Identity(3, 3));
+  problem.cones = {{.normal_row = 0, .dimension = 3, .coefficient = 1e3}};
+  const Vector z{{0.16, 0.02, 0.0}};
+  problem.q = -z;
+  problem.q[1] += 4e-18;
+  const Certificate c = certify(problem, z);
+  EXPECT_GT(c.unit_free_residual, 1e-14);
+  EXPECT_EQ(judge(c, 1e-15, Status::kStalled), Status::kSolvedToRounding);
+  problem.q[0] -= 1e-9;  // the normal part is as it was
+  EXPECT_EQ(judge(certify(problem, z), 1e-15, Status::kStalled), Status::kStalled);
+}
+
 TEST(Certificate, OfAnIslandIsThatOfTheIslandAlone) {
   Matrix M = Matrix::Zero(3, 3);
   M.topLeftCorner(2, 2) = Matrix{{2, 1}, {1, 2}};
