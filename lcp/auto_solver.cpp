@@ -17,6 +17,7 @@ constexpr Index kLemkeRows = 1000;            // the same, with larger constants
 constexpr double kMassRatioForSweeps = 1e3;   // above it sweeps stall
 constexpr int kFirstSweeps = 48;
 constexpr int kConeInteriorSteps = 30;  // where nothing slides about ten are enough
+constexpr int kSetsForLastDigits = 2;
 constexpr int kBlockPivotingSets = 50;  // real problems need up to 20; more only where it cycles
 // An interior point of this many rows costs a few milliseconds: sweeps only win where little
 // accuracy is asked.
@@ -168,7 +169,9 @@ bool AutoSolver::attempt(const Problem& problem, const Step& step, int max_itera
     result.ray_bound = one_.ray_bound;
   }
   const double merit = BestIterate::merit(one_.certificate);
-  if (is_solved(one_.status) || merit < best_merit_ || best_solver_.empty()) {
+  const bool solves_now = is_solved(one_.status) && !is_solved(best_status_);
+  const bool better = merit < best_merit_ && is_solved(one_.status) == is_solved(best_status_);
+  if (best_solver_.empty() || solves_now || better) {
     best_merit_ = merit;
     best_solver_ = step.solver;
     best_certificate_ = one_.certificate;
@@ -213,6 +216,10 @@ Status AutoSolver::iterate(const Problem& problem, const Vector* warm_start,
   for (std::size_t k = 0; !done && k < chain_.size(); ++k) {
     const int most = settings_.max_iterations >= 0 ? settings_.max_iterations : chain_[k].most;
     done = attempt(problem, chain_[k], most, deadline, result);
+  }
+  if (best_status_ == Status::kSolvedToRounding && best_solver_ != "sticking") {
+    attempt(problem, {"sticking", "the last digits", kSetsForLastDigits}, kSetsForLastDigits,
+            deadline, result);
   }
   result.solver = "auto";
   if (!best_solver_.empty()) {

@@ -52,6 +52,7 @@ struct AutoSettings : SolverSettings {
 ///   18 to 33, alart-curnier 10 to 112, but smaller ones, as open contacts drop out of its systems:
 ///   its time is less, and cone-interior-point does not end on RockPile. So it is not tried there.
 ///
+/// What another solver solved to rounding only, sticking is given to find the last digits of.
 /// Solvers that refuse a problem are passed over; lemke only up to 1000 rows, structured-lemke up
 /// to 2000. Each starts from the best iterate so far (the interior
 /// point only from one with residuals below 1e-4, being slower from a worse one than from none).

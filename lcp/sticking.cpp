@@ -17,6 +17,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Proximal weight of the linear solves, of a unit diagonal; see ActiveSetNewton.
 constexpr double kProximal = 1e-9;
 constexpr int kMostProximalSteps = 12;
+// The same of refine(), where a heavy body on light ones moves by as little.
+constexpr double kFineProximal = 1e-12;
 // Rounds of seek_inside(), and what a round must leave of the largest violation to go on.
 constexpr int kMostRounds = 25;
 constexpr double kHelps = 0.95;
@@ -30,6 +32,10 @@ constexpr double kRounding = 1e-14;
 // up.
 constexpr double kAsGood = 0.01;
 constexpr int kSetsToPolish = 2;
+// Steps of refine(), what one must leave of the residual to count, and how many may not.
+constexpr int kMostRefinements = 60;
+constexpr double kRefines = 0.9;
+constexpr int kRefinePatience = 8;
 // Sets that may follow each other without a better one.
 constexpr int kPatience = 6;
 
@@ -46,7 +52,7 @@ class Sticking::Workspace {
  private:
   void set(const Problem& problem);
   void guess();
-  [[nodiscard]] bool factor();
+  [[nodiscard]] bool factor(double proximal = kProximal);
   void gradient();
   void solve_linear();
   void solve_on_set();
@@ -55,6 +61,8 @@ class Sticking::Workspace {
   int correct();
   double consider();
   double measure_caller(const Vector& z);
+  double measure_exactly(const Vector& z);
+  void refine(double tolerance);
   [[nodiscard]] double row_violation(const ContactGroups::Group& group) const;
 
   const Problem* problem_ = nullptr;
@@ -65,6 +73,7 @@ class Sticking::Workspace {
   std::vector<char> reversed_;  // sliding contacts whose slip changed its direction
   Vector x_, g_, r_, d_, h_, dx_, u_, z_, w_, best_z_;
   Vector impulse_, velocity_;  // of the bodies, caller's units
+  std::vector<long double> long_z_, long_w_, long_impulse_, long_velocity_;
   double best_ = kInfinity;
   double fine_ = 0.0;  // residuals up to this need not be known better
   int factorizations_ = 0;
@@ -86,6 +95,54 @@ double Sticking::Workspace::measure_caller(const Vector& z) {
     best_z_ = z;
   }
   return residual;
+}
+
+/// The same with w_ to all its digits: beside a large z its product in double has none.
+double Sticking::Workspace::measure_exactly(const Vector& z) {
+  const auto& A = std::get<FactoredMatrix>(problem_->M);
+  long_z_.assign(z.begin(), z.end());
+  long_w_.resize(long_z_.size());
+  long_impulse_.resize(A.degrees_of_freedom());
+  long_velocity_.resize(A.degrees_of_freedom());
+  A.transpose_times(long_z_.data(), long_impulse_.data());
+  A.apply_inverse_mass(long_impulse_.data(), long_velocity_.data());
+  A.times(long_velocity_.data(), long_z_.data(), long_w_.data());
+  for (Index i = 0; i < z.size(); ++i) {
+    w_[i] = static_cast<double>(long_w_[i] + problem_->q[i]);
+  }
+  return groups_.residual(*problem_, z, w_, 0.0);
+}
+
+/// Proximal steps on the set from best_z_, whose residuals are known exactly: with large mass
+/// ratios those of solve_linear() hide, in the rounding of the light bodies' velocities, that
+/// heavy ones still move.
+void Sticking::Workspace::refine(double tolerance) {
+  if (!factor(kFineProximal)) {
+    return;
+  }
+  z_ = best_z_;
+  double least = best_ = measure_exactly(z_);
+  int without = 0;
+  for (int step = 0; step < kMostRefinements && best_ > tolerance; ++step) {
+    h_ = -(d_.array() > 0.0).select(w_.cwiseQuotient(rows_.scale()), 0.0);
+    dx_ = d_.cwiseProduct(h_);
+    rows_.transpose_times(dx_, u_);
+    cholesky_->solve(u_);
+    rows_.times(u_, dx_);
+    dx_ = d_.cwiseProduct(h_ - dx_);
+    z_ += dx_.cwiseQuotient(rows_.scale());
+    groups_.clamp(z_);
+    const double residual = measure_exactly(z_);
+    if (residual < best_) {
+      best_ = residual;
+      best_z_ = z_;
+    }
+    without = residual < kRefines * least ? 0 : without + 1;
+    least = std::min(least, residual);
+    if (without > kRefinePatience || !std::isfinite(residual)) {
+      return;
+    }
+  }
 }
 
 void Sticking::Workspace::set(const Problem& problem) {
@@ -118,13 +175,13 @@ void Sticking::Workspace::guess() {
 }
 
 /// Factors for the set: rows that do not move have d = 0.
-bool Sticking::Workspace::factor() {
+bool Sticking::Workspace::factor(double proximal) {
   for (std::size_t c = 0; c < groups_.size(); ++c) {
     const auto& [first, dimension, mu, is_free] = groups_[c];
     for (int k = 0; k < dimension; ++k) {
       const bool moves =
           state_[c] == Contact::kSticking || (state_[c] == Contact::kSliding && k == 0);
-      d_[first + k] = moves ? 1.0 / (rows_.compliance()[first + k] + kProximal) : 0.0;
+      d_[first + k] = moves ? 1.0 / (rows_.compliance()[first + k] + proximal) : 0.0;
     }
   }
   ++factorizations_;
@@ -332,10 +389,15 @@ Status Sticking::Workspace::solve(const Problem& problem, const StickingSettings
     const double residual = consider();
     without = residual < 0.9 * least ? 0 : without + 1;
     least = std::min(residual, least);
-    if (residual <= kBelow * settings.tolerance || without > kPatience || correct() == 0) {
-      ending = Status::kStalled;
-      break;
+    const bool solved = residual <= kBelow * settings.tolerance;
+    if (!solved && without <= kPatience && correct() > 0) {
+      continue;
     }
+    ending = Status::kStalled;
+    if (!solved && without <= kPatience) {  // the right set, but for rounding
+      refine(kBelow * settings.tolerance);
+    }
+    break;
   }
   result.statistics.factorizations = factorizations_;
   result.statistics.factor_bytes = static_cast<std::int64_t>(cholesky_->counts().bytes);

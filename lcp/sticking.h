@@ -27,6 +27,9 @@ struct StickingSettings : SolverSettings {
 /// the start it is searched for one inside the cones by reflections (Motzkin, Schoenberg, The
 /// relaxation method for linear inequalities, 1954), as ActiveSetNewton does with bounds.
 ///
+/// Where the set is right and rounding hides the rest (a heavy body on light ones), one more factor
+/// and residuals in long double find the last digits.
+///
 /// A warm start far below the tolerance is the answer, without a factorisation: what a stack at
 /// rest costs. Made for resting and sticking contacts; with many that slide, or from a bad start,
 /// the sets may cycle, and it gives up soon: an attempt before a solver that does not (AutoSolver).

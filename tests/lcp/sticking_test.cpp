@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 #include <string>
+#include <vector>
 
 namespace signorini::lcp {
 namespace {
@@ -131,6 +132,53 @@ TEST(Sticking, FreeRowsAndRowsWithoutFriction) {
   EXPECT_LT(std::abs(result.w[3]), 1e-14);
   EXPECT_LT(std::abs(result.w[0]), 1e-14);
   EXPECT_GT(std::abs(result.z[3]), 1.0);
+}
+
+/// Point masses on each other, four contacts between any two, at rest under gravity.
+Problem column(const std::vector<double>& masses) {
+  FactoredMatrix A;
+  Problem problem;
+  for (const double mass : masses) {
+    A.mass.add_inverse(1.0 / mass * Matrix::Identity(3, 3));
+  }
+  for (int body = 0; body < static_cast<int>(masses.size()); ++body) {
+    for (int contact = 0; contact < 4; ++contact) {
+      problem.cones.push_back({A.rows(), 3, 0.5});
+      for (int k = 0; k < 3; ++k) {
+        A.add_row();
+        A.add_entry(body, Vector(Vector::Unit(3, k)));
+        if (body > 0) {
+          A.add_entry(body - 1, Vector(-Vector::Unit(3, k)));
+        }
+      }
+    }
+  }
+  problem.q.setZero(A.rows());
+  for (int contact = 0; contact < 4; ++contact) {
+    problem.q[3 * contact] = -9.81 / 60.0;
+  }
+  problem.M = A;
+  return problem;
+}
+
+// Beside 1e9 kg a double's product M z knows the light body's velocity to 1e-7 m/s; what is asked
+// for is that of the heavy one, whose forces must be its weight to more digits than that.
+TEST(Sticking, AHeavyBodyOnLightOnesRestsToItsOwnDigits) {
+  std::vector<double> masses(60, 1.0);
+  masses.back() = 1e9;
+  const Problem problem = column(masses);
+  Vector start = Vector::Zero(problem.size());
+  for (std::size_t c = 0; c < problem.cones.size(); ++c) {
+    start[problem.cones[c].normal_row] = 1e9 * 9.81 / 60.0 * (c % 4 == 0 ? 0.4 : 0.2);
+  }
+  const Result result = solve(problem, {{.tolerance = 1e-13}}, &start);
+  EXPECT_EQ(result.status, Status::kSolvedToRounding);
+  double carried = 0.0;
+  for (int contact = 236; contact < 240; ++contact) {
+    carried += result.z[problem.cones[contact].normal_row];
+  }
+  EXPECT_NEAR(carried / (1e9 * 9.81 / 60.0), 1.0, 1e-9);  // without: 3e-8
+  EXPECT_EQ(result.statistics.factorizations, 2);         // the set's, and one for the last digits
 }
 
 TEST(Sticking, LimitsEndWithTheirStatusAndTheBestIterate) {
