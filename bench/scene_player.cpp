@@ -1,6 +1,8 @@
 #include "bench/scene_player.h"
 
 #include <signorini/collision/collision_world.h>
+#include <signorini/core/response/assembly.h>
+#include <signorini/core/response/set_impact.h>
 
 #include <algorithm>
 
@@ -11,23 +13,31 @@ class OurPlayer final : public ScenePlayer {
  public:
   OurPlayer(const SteppedScene& scene, const TimeStepSettings& settings)
       : world_(scene.bodies, scene.colliders, PairingRule::kMinimum),
-        stepper_(scene.bodies, world_, with_step(settings, scene.step)),
+        stepper_(scene.bodies, world_, of_scene(settings, scene)),
         state_(scene.state) {}
 
   void step() override {
     stepper_.step(state_, report_);
     unsolved_ += lcp::is_solved(report_.status) ? 0 : 1;
+    status_ = worse(status_, report_.status);
     for (const IslandReport& island : report_.islands) {
       worst_ = std::max(worst_, island.unit_free_residual);
     }
   }
   [[nodiscard]] State poses() const override { return state_; }
   [[nodiscard]] double worst_residual() const override { return worst_; }
+  [[nodiscard]] std::vector<Velocity> velocities() const override {
+    return velocities_of(stepper_.bodies(), state_);
+  }
   [[nodiscard]] int unsolved_steps() const override { return unsolved_; }
+  [[nodiscard]] lcp::Status status() const override { return status_; }
 
  private:
-  static TimeStepSettings with_step(TimeStepSettings settings, double step) {
-    settings.step = step;
+  static TimeStepSettings of_scene(TimeStepSettings settings, const SteppedScene& scene) {
+    settings.step = scene.step;
+    settings.gravity = scene.gravity;
+    settings.margin = scene.margin;
+    settings.touching_tolerance = 1e-4 * scene.margin;
     return settings;
   }
 
@@ -37,6 +47,7 @@ class OurPlayer final : public ScenePlayer {
   StepReport report_;
   double worst_ = 0.0;
   int unsolved_ = 0;
+  lcp::Status status_ = lcp::Status::kSolved;
 };
 
 }  // namespace

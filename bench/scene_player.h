@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace signorini::bench {
 
@@ -19,11 +20,16 @@ class ScenePlayer {
   virtual void step() = 0;
   /// Positions and orientations now, one a body; momenta are left out.
   [[nodiscard]] virtual State poses() const = 0;
+  /// Velocities now, one a body.
+  [[nodiscard]] virtual std::vector<Velocity> velocities() const = 0;
   /// The worst unit-free residual of the contact problems so far, or NaN where the engine knows
   /// none.
   [[nodiscard]] virtual double worst_residual() const = 0;
   /// Steps of which a contact problem was not solved (engines that do not say: 0).
   [[nodiscard]] virtual int unsolved_steps() const = 0;
+  /// Of the steps so far the first that is not solved, else solved to rounding if one is (engines
+  /// that do not say: not run).
+  [[nodiscard]] virtual lcp::Status status() const = 0;
 };
 
 struct Contestant {

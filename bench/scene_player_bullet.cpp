@@ -1,3 +1,5 @@
+#include <signorini/collision/hull.h>
+
 #include "bench/scene_player.h"
 
 #include <btBulletDynamicsCommon.h>
@@ -13,6 +15,26 @@ btVector3 bullet(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
+/// A box, ball or hull about the body's axes. @throws std::invalid_argument for other shapes
+std::unique_ptr<btCollisionShape> bullet_shape(const collision::Shape& shape) {
+  if (const auto* box = std::get_if<collision::Box>(&shape)) {
+    return std::make_unique<btBoxShape>(bullet(box->half_extents));
+  }
+  if (const auto* ball = std::get_if<collision::Sphere>(&shape)) {
+    return std::make_unique<btSphereShape>(ball->radius);
+  }
+  if (const auto* hull = std::get_if<collision::ConvexHull>(&shape)) {
+    auto points = std::make_unique<btConvexHullShape>();
+    points->setMargin(0.0);  // so that it is the shape that was given
+    for (const Vec3& vertex : hull->data->vertices) {
+      points->addPoint(bullet(vertex), false);
+    }
+    points->recalcLocalAabb();
+    return points;
+  }
+  throw std::invalid_argument("scene player: Bullet is given boxes, balls and hulls only");
+}
+
 class BulletPlayer final : public ScenePlayer {
  public:
   BulletPlayer(const SteppedScene& scene, int iterations)
@@ -20,7 +42,7 @@ class BulletPlayer final : public ScenePlayer {
         dispatcher_(&configuration_),
         world_(&dispatcher_, &broad_phase_, &solver_, &configuration_) {
     world_.getSolverInfo().m_numIterations = iterations;
-    world_.setGravity(btVector3(0.0, 0.0, -9.81));
+    world_.setGravity(bullet(scene.gravity));
     for (const collision::Collider& collider : scene.colliders) {
       add(scene.bodies[collider.body], scene.state[collider.body], collider);
     }
@@ -46,19 +68,24 @@ class BulletPlayer final : public ScenePlayer {
     }
     return state;
   }
+  [[nodiscard]] std::vector<Velocity> velocities() const override {
+    std::vector<Velocity> all;
+    for (const auto& body : bodies_) {
+      const btVector3& v = body->getLinearVelocity();
+      const btVector3& w = body->getAngularVelocity();
+      all.push_back({Vec3(v.x(), v.y(), v.z()), Vec3(w.x(), w.y(), w.z())});
+    }
+    return all;
+  }
   [[nodiscard]] double worst_residual() const override {
     return std::numeric_limits<double>::quiet_NaN();
   }
   [[nodiscard]] int unsolved_steps() const override { return 0; }
+  [[nodiscard]] lcp::Status status() const override { return lcp::Status::kNotRun; }
 
  private:
-  /// @pre one box a body, along its axes
   void add(const Body& body, const BodyState& state, const collision::Collider& collider) {
-    const auto* box = std::get_if<collision::Box>(&collider.shape);
-    if (box == nullptr) {
-      throw std::invalid_argument("stacks: Bullet is given boxes only");
-    }
-    shapes_.push_back(std::make_unique<btBoxShape>(bullet(box->half_extents)));
+    shapes_.push_back(bullet_shape(collider.shape));
     btRigidBody::btRigidBodyConstructionInfo info(body.is_dynamic() ? body.mass : 0.0, nullptr,
                                                   shapes_.back().get(),
                                                   bullet(body.inertia.diagonal()));
@@ -67,6 +94,9 @@ class BulletPlayer final : public ScenePlayer {
     info.m_friction = std::sqrt(collider.material.friction);  // of a pair: multiplied
     info.m_restitution = std::sqrt(collider.material.restitution);
     bodies_.push_back(std::make_unique<btRigidBody>(info));
+    const Velocity motion = velocity(body, state);
+    bodies_.back()->setLinearVelocity(bullet(motion.linear));
+    bodies_.back()->setAngularVelocity(bullet(motion.angular));
     bodies_.back()->setActivationState(DISABLE_DEACTIVATION);
     world_.addRigidBody(bodies_.back().get());
   }

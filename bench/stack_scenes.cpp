@@ -8,40 +8,17 @@ namespace {
 
 constexpr Material kSurface{.friction = 0.5, .restitution = 0.0};
 
-void add_box(const Vec3& half, double mass, const Vec3& position, BodyKind kind,
-             SteppedScene& scene) {
-  const int index = static_cast<int>(scene.bodies.size());
-  const Vec3 square = half.cwiseProduct(half);
-  Body body;
-  body.kind = kind;
-  body.mass = mass;
-  body.inertia =
-      Vec3(square.y() + square.z(), square.x() + square.z(), square.x() + square.y()).asDiagonal();
-  body.inertia *= mass / 3.0;
-  body.name = index == 0 ? "ground" : fmt::format("box {}", index);
-  BodyState state;
-  state.x = position;
-  scene.colliders.push_back({.body = index,
-                             .shape = collision::Box{half},
-                             .local = {},
-                             .material = kSurface,
-                             .name = body.name});
-  scene.bodies.push_back(std::move(body));
-  scene.state.push_back(state);
-}
-
 SteppedScene ground(const std::string& name, double step, double seconds) {
   SteppedScene scene;
   scene.name = name;
   scene.step = step;
   scene.seconds = seconds;
-  add_box(Vec3::Constant(kGroundHalfEdge), 1.0, Vec3(0.0, 0.0, -kGroundHalfEdge), BodyKind::kFixed,
-          scene);
+  add_box(Vec3::Constant(kGroundHalfEdge), 1.0, Vec3(0.0, 0.0, -kGroundHalfEdge), kSurface, scene);
   return scene;
 }
 
 void add_cube(double mass, const Vec3& position, SteppedScene& scene) {
-  add_box(Vec3::Constant(0.5), mass, position, BodyKind::kDynamic, scene);
+  add_box(Vec3::Constant(0.5), mass, position, kSurface, scene);
   scene.watched = static_cast<int>(scene.bodies.size()) - 1;
 }
 
@@ -50,6 +27,29 @@ std::string step_text(double step) {
 }
 
 }  // namespace
+
+void add_body(const collision::Shape& shape, double mass, const Mat3& inertia, const Vec3& position,
+              const Material& material, SteppedScene& scene) {
+  const int index = static_cast<int>(scene.bodies.size());
+  Body body;
+  body.kind = index == 0 ? BodyKind::kFixed : BodyKind::kDynamic;
+  body.mass = mass;
+  body.inertia = inertia;
+  body.name = index == 0 ? "ground" : fmt::format("body {}", index);
+  BodyState state;
+  state.x = position;
+  scene.colliders.push_back(
+      {.body = index, .shape = shape, .local = {}, .material = material, .name = body.name});
+  scene.bodies.push_back(std::move(body));
+  scene.state.push_back(state);
+}
+
+void add_box(const Vec3& half, double mass, const Vec3& position, const Material& material,
+             SteppedScene& scene) {
+  const Vec3 square = half.cwiseProduct(half);
+  const Vec3 moments = mass / 3.0 * (Vec3::Constant(square.sum()) - square);
+  add_body(collision::Box{half}, mass, moments.asDiagonal(), position, material, scene);
+}
 
 SteppedScene stack_scene(int count, double step, double seconds) {
   SteppedScene scene =

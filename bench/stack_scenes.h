@@ -8,13 +8,14 @@
 
 namespace signorini::bench {
 
-/// A scene that two engines step. SI units, z up, gravity 9.81 m/s^2; body 0 is the ground, whose
-/// top is z = 0.
+/// A scene that two engines step. SI units, z up; body 0 is the ground, whose top is z = 0.
 struct SteppedScene {
   std::string name;
   Bodies bodies;
   State state;
   std::vector<collision::Collider> colliders;
+  Vec3 gravity = Vec3(0.0, 0.0, -9.81);  ///< m/s^2
+  double margin = 0.01;      ///< of our stepper, m; its touching tolerance is 1e-4 of it
   double step = 1.0 / 60.0;  ///< s
   double seconds = 1.0;      ///< how long it should stand
   int watched = 1;           ///< the body whose drift is measured: the top one
@@ -22,6 +23,13 @@ struct SteppedScene {
 
 /// The ground is a box of this half edge: a plane of Bullet's makes one contact with a box.
 inline constexpr double kGroundHalfEdge = 100.0;
+
+/// Adds a body with one collider, at rest; the first one is the ground: fixed.
+void add_body(const collision::Shape& shape, double mass, const Mat3& inertia, const Vec3& position,
+              const Material& material, SteppedScene& scene);
+/// The same of a solid box, whose inertia follows.
+void add_box(const Vec3& half, double mass, const Vec3& position, const Material& material,
+             SteppedScene& scene);
 
 /// `count` cubes of 1 m and 1 kg on each other, mu = 0.5, no restitution.
 [[nodiscard]] SteppedScene stack_scene(int count, double step, double seconds);

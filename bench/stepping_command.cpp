@@ -2,6 +2,7 @@
 
 #include <signorini/lcp/io/whole_file.h>
 
+#include "bench/extremes_study.h"
 #include "bench/stacks_study.h"
 
 #include <CLI/CLI.hpp>
@@ -32,10 +33,20 @@ std::vector<Contestant> contestants() {
   return all;
 }
 
+void write_csv(const std::string& folder, const std::string& name, const std::string& csv) {
+  if (folder.empty()) {
+    return;
+  }
+  const std::filesystem::path file = std::filesystem::path(folder) / name;
+  lcp::write_whole_file(file, csv);
+  fmt::print("written: {}\n", file.string());
+}
+
 }  // namespace
 
 struct SteppingCommand::Options {
   StacksOptions stacks;
+  ExtremesOptions extremes;
   std::string out;
 };
 
@@ -51,27 +62,43 @@ SteppingCommand::SteppingCommand(CLI::App& app) : options_(std::make_unique<Opti
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   stacks_->add_option("--scene", o.stacks.scene, "Only scenes whose names contain this");
-  stacks_->add_option("--out", o.out,
-                      "Folder for stacks.csv, made if absent (default: print only)");
+  extremes_ = app.add_subcommand(
+      "extremes",
+      "Mass ratios, sizes, steps, speeds, restitution, friction, heights, redundant and nearly "
+      "parallel contacts, inertia ratios, distances: pass, degraded or fail for every solver");
+  extremes_->add_option("--cap", o.extremes.cap, "CPU seconds of a cell")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  extremes_->add_option("--axis", o.extremes.axis, "Only axes whose names contain this");
+  extremes_->add_option("--contestant", o.extremes.contestant,
+                        "Only solvers and engines whose names contain this");
+  for (CLI::App* study : {stacks_, extremes_}) {
+    study->add_option("--out", o.out,
+                      "Folder for " + study->get_name() +
+                          ".csv, made if absent (default: print "
+                          "only)");
+  }
 }
 
 SteppingCommand::~SteppingCommand() = default;
 
 bool SteppingCommand::is_asked() const {
-  return stacks_->parsed();
+  return stacks_->parsed() || extremes_->parsed();
 }
 
 int SteppingCommand::run() const {
   if (!options_->out.empty()) {
     std::filesystem::create_directories(options_->out);
   }
+  if (extremes_->parsed()) {
+    const ExtremesReport report =
+        run_extremes_study(options_->extremes, extreme_cells(), extreme_contestants(), std::cout);
+    write_csv(options_->out, "extremes.csv", report.to_csv());
+    return report.passed() ? kClaimsHold : kWrongClaim;
+  }
   const StacksReport report =
       run_stacks_study(options_->stacks, stacks_scenes(), contestants(), std::cout);
-  if (!options_->out.empty()) {
-    const std::filesystem::path file = std::filesystem::path(options_->out) / "stacks.csv";
-    lcp::write_whole_file(file, report.to_csv());
-    fmt::print("written: {}\n", file.string());
-  }
+  write_csv(options_->out, "stacks.csv", report.to_csv());
   return report.passed() ? kClaimsHold : kWrongClaim;
 }
 

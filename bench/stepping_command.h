@@ -5,13 +5,13 @@
 
 namespace signorini::bench {
 
-/// The studies of stepping: `signorini-bench stacks`.
+/// The studies of stepping: `signorini-bench stacks` and `extremes`.
 class SteppingCommand {
  public:
   explicit SteppingCommand(CLI::App& app);
   ~SteppingCommand();
   [[nodiscard]] bool is_asked() const;
-  /// @return the exit code: 0, or 1 if a step of ours was not solved.
+  /// @return the exit code: 0, or 1 if a claim of the study was wrong.
   /// @throws std::exception for what cannot be run or written.
   [[nodiscard]] int run() const;
 
@@ -19,6 +19,7 @@ class SteppingCommand {
   struct Options;
   std::unique_ptr<Options> options_;
   CLI::App* stacks_;
+  CLI::App* extremes_;
 };
 
 }  // namespace signorini::bench

@@ -1,7 +1,12 @@
+#include "bench/extremes_study.h"
 #include "bench/stacks_study.h"
 
 #include <gtest/gtest.h>
+#include <limits>
+#include <set>
 #include <sstream>
+#include <stdexcept>
+#include <utility>
 
 namespace signorini::bench {
 namespace {
@@ -33,6 +38,130 @@ TEST(StacksStudy, EveryPositionOfTheDialSolvesAPyramid) {
     EXPECT_TRUE(report.passed()) << out.str();
     EXPECT_LT(report.rows.at(0).drift, 1e-8) << position;
   }
+}
+
+/// The first and the last value of every axis up to a mass ratio of 1e4, stacks up to 30.
+std::vector<ExtremeCell> fast_sample() {
+  std::vector<ExtremeCell> all = extreme_cells();
+  std::erase_if(all, [](const ExtremeCell& cell) {
+    return cell.mass_ratio > 1e4 || (cell.axis == "stack height" && cell.value > 30.0);
+  });
+  std::vector<ExtremeCell> sample;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    std::size_t first = i;
+    std::size_t last = i;
+    while (first > 0 && all[first - 1].axis == all[i].axis) --first;
+    while (last + 1 < all.size() && all[last + 1].axis == all[i].axis) ++last;
+    if (all[i].value == all[first].value || all[i].value == all[last].value) {
+      sample.push_back(all[i]);
+    }
+  }
+  return sample;
+}
+
+TEST(ExtremesStudy, TheReferencePositionPassesASample) {
+  const std::vector<ExtremeCell> cells = fast_sample();
+  std::set<std::string> axes;
+  for (const ExtremeCell& cell : cells) {
+    axes.insert(cell.axis);
+  }
+  EXPECT_EQ(axes.size(), 13U);
+  std::ostringstream out;
+  const ExtremesReport report = run_extremes_study({.cap = 60.0, .contestant = kReferencePosition},
+                                                   cells, extreme_contestants(), out);
+  EXPECT_TRUE(report.passed()) << out.str();
+  EXPECT_EQ(report.rows.size(), cells.size());
+  EXPECT_EQ(report.count(kReferencePosition, 1e4).passed, static_cast<int>(cells.size()));
+  EXPECT_NE(report.to_csv().find("groove"), std::string::npos);
+}
+
+TEST(ExtremesStudy, NoSolverTellsALieAboutTwoCubes) {
+  std::vector<ExtremeCell> cells = extreme_cells();
+  std::erase_if(cells, [](const ExtremeCell& cell) {
+    return cell.axis != "mass ratio, heavy on light" || (cell.value != 1.0 && cell.value != 1e4);
+  });
+  std::ostringstream out;
+  const ExtremesReport report =
+      run_extremes_study({.cap = 60.0}, cells, extreme_contestants(), out);
+  for (const ExtremesRow& row : report.rows) {
+    EXPECT_FALSE(row.is_ours && is_defect(row.verdict)) << out.str();
+    if (row.is_ours && !lcp::is_solved(row.status)) {
+      EXPECT_NE(row.verdict, ExtremeVerdict::kPass) << row.contestant;
+    }
+  }
+}
+
+/// Moves by the closed form, but for what it is told to do wrong.
+class FakePlayer final : public ScenePlayer {
+ public:
+  struct Faults {
+    double velocity = 0.0;  ///< m/s too fast
+    lcp::Status status = lcp::Status::kSolved;
+    bool throws = false;
+    bool hangs = false;
+  };
+  FakePlayer(const ExtremeScene& extreme, const Faults& faults)
+      : extreme_(extreme), faults_(faults) {}
+
+  void step() override {
+    ++k_;
+    if (faults_.throws) {
+      throw std::runtime_error("no");
+    }
+    while (faults_.hangs) {
+      hung_ = hung_ + 1;
+    }
+  }
+  [[nodiscard]] State poses() const override {
+    State state = extreme_.scene.state;
+    for (std::size_t i = 0; i < state.size(); ++i) {
+      if (extreme_.scene.bodies[i].is_dynamic()) {
+        state[i].x += extreme_.motion(k_).shift;
+      }
+    }
+    return state;
+  }
+  [[nodiscard]] std::vector<Velocity> velocities() const override {
+    Velocity velocity{.linear = extreme_.motion(k_).velocity};
+    velocity.linear.y() += faults_.velocity;
+    return std::vector<Velocity>(extreme_.scene.bodies.size(), velocity);
+  }
+  [[nodiscard]] double worst_residual() const override { return 0.0; }
+  [[nodiscard]] int unsolved_steps() const override { return 0; }
+  [[nodiscard]] lcp::Status status() const override { return faults_.status; }
+
+ private:
+  ExtremeScene extreme_;
+  Faults faults_;
+  int k_ = 0;
+  volatile int hung_ = 0;
+};
+
+ExtremeVerdict verdict_of(const FakePlayer::Faults& faults) {
+  std::vector<ExtremeCell> cells = extreme_cells();
+  std::erase_if(cells, [](const ExtremeCell& cell) { return cell.value != 0.001; });
+  cells.resize(1);  // sliding at a step of 1 ms: what gravity gives is 0.00981 m/s
+  const ExtremeScene extreme = cells.front().make(true);
+  const Contestant fake{kReferencePosition, [&](const SteppedScene&) {
+                          return std::make_unique<FakePlayer>(extreme, faults);
+                        }};
+  std::ostringstream out;
+  const ExtremesReport report = run_extremes_study({.cap = 0.5}, cells, {{.player = fake}}, out);
+  EXPECT_EQ(report.passed(), report.rows.at(0).verdict == ExtremeVerdict::kPass);
+  return report.rows.at(0).verdict;
+}
+
+TEST(ExtremesStudy, JudgesByErrorAndStatus) {
+  EXPECT_EQ(verdict_of({}), ExtremeVerdict::kPass);
+  EXPECT_EQ(verdict_of({.velocity = 1e-9}), ExtremeVerdict::kPass);
+  EXPECT_EQ(verdict_of({.velocity = 1e-7}), ExtremeVerdict::kDegraded);
+  EXPECT_EQ(verdict_of({.velocity = 1e-3}), ExtremeVerdict::kFail);
+  EXPECT_EQ(verdict_of({.status = lcp::Status::kSolvedToRounding}), ExtremeVerdict::kPass);
+  EXPECT_EQ(verdict_of({.status = lcp::Status::kStalled}), ExtremeVerdict::kDegraded);
+  EXPECT_EQ(verdict_of({.velocity = std::numeric_limits<double>::quiet_NaN()}),
+            ExtremeVerdict::kNotANumber);
+  EXPECT_EQ(verdict_of({.throws = true}), ExtremeVerdict::kCrashed);
+  EXPECT_EQ(verdict_of({.hangs = true}), ExtremeVerdict::kTime);
 }
 
 }  // namespace
