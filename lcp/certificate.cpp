@@ -134,7 +134,8 @@ void Certifier::find_bounds(const Problem& problem) {
 Certifier::Measure Certifier::measure_row(Index i) const {
   const long double z = z_[i];
   const long double w = w_[i];
-  const auto [lower, upper] = bounds_[i];
+  const long double lower = bounds_[i].lower;
+  const long double upper = bounds_[i].upper;
   const auto step = [&](long double scale) {  // 0 exactly where the row is solved
     const long double moved = z - w / scale;
     const long double clamped = std::min(std::max(moved, lower), upper);
@@ -154,8 +155,9 @@ Certifier::Measure Certifier::measure_row(Index i) const {
 }
 
 Certifier::Measure Certifier::measure_cone(const Problem& problem, std::size_t cone) const {
-  const auto [first, d, coefficient] = problem.cones[cone];
-  const long double mu = coefficient;
+  const int first = problem.cones[cone].normal_row;
+  const int d = problem.cones[cone].dimension;
+  const long double mu = problem.cones[cone].coefficient;
   const long double* z = z_.data() + first;
   std::array<long double, 3> w{};
   std::copy(w_.data() + first, w_.data() + first + d, w.data());
