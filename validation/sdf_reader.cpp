@@ -6,6 +6,7 @@
 #include <signorini/validation/sdf_survey.h>
 #include <signorini/validation/urdf_extras.h>
 #include <signorini/validation/xml_check.h>
+#include <signorini/validation/xml_includes.h>
 #include <signorini/validation/xml_split.h>
 
 #include <algorithm>
@@ -440,6 +441,7 @@ Scene read(const std::string& text, const std::string& file, const std::string& 
   tinyxml2::XMLDocument xml;
   const SceneFormat format = parse_xml(text, source, xml);
   check_numbers(xml, format, source);
+  if (format == SceneFormat::kSdf) check_includes(xml, file, source);
   Scene scene;
   scene.source = source;
   scene.text = text;
@@ -484,9 +486,11 @@ Scene read(const std::string& text, const std::string& file, const std::string& 
 }  // namespace
 
 Scene read_scene_file(const std::string& path, const ReadOptions& options) {
-  std::ifstream file(path, std::ios::binary);
+  std::ifstream file;
   std::ostringstream text;
-  if (!file || std::filesystem::is_directory(path) || !(text << file.rdbuf())) {
+  std::error_code error;
+  if (std::filesystem::is_regular_file(path, error)) file.open(path, std::ios::binary);
+  if (!file.is_open() || !(text << file.rdbuf())) {
     throw InputError(path + ": cannot be read: expected an SDFormat or URDF file");
   }
   return read(text.str(), path, path, options);

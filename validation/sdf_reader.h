@@ -43,7 +43,8 @@ struct ReadOptions {
 /// no physics (visuals, sensors, plugins, lights ...), one for physics that is ignored.
 ///
 /// @throws InputError naming the file, the model or link, and the element or field: file missing,
-/// XML malformed, numbers that are not finite or out of bounds, inertia that violates the triangle
+/// XML malformed or nested deeper than tinyxml2 reads, <include>s that never end (xml_includes.h),
+/// numbers that are not finite or out of bounds, inertia that violates the triangle
 /// inequality, collision shapes and joints that are not supported.
 [[nodiscard]] Scene read_scene_file(const std::string& path, const ReadOptions& options = {});
 
