@@ -16,9 +16,23 @@ extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*malloc_hook)(con
 namespace {
 std::atomic<long> allocations{0};
 std::atomic<long> back_end_allocations{0};
+thread_local long allowed_allocations = -1;  // of this thread; < 0: any number
 
 void count_one() {
   ++(signorini::lcp::BackEndScope::is_active() ? back_end_allocations : allocations);
+}
+
+/// Counts one. @return false if there is to be no memory for it
+[[maybe_unused]] bool may_allocate() {
+  count_one();
+  if (signorini::lcp::BackEndScope::is_active()) {
+    return true;
+  }
+  if (allowed_allocations > 0) {
+    --allowed_allocations;
+    return true;
+  }
+  return allowed_allocations < 0;
 }
 }  // namespace
 
@@ -37,28 +51,22 @@ void* __libc_realloc(void* old, std::size_t size);
 void* __libc_memalign(std::size_t alignment, std::size_t size);
 
 void* malloc(std::size_t size) {
-  count_one();
-  return __libc_malloc(size);
+  return may_allocate() ? __libc_malloc(size) : nullptr;
 }
 void* calloc(std::size_t count, std::size_t size) {
-  count_one();
-  return __libc_calloc(count, size);
+  return may_allocate() ? __libc_calloc(count, size) : nullptr;
 }
 void* realloc(void* old, std::size_t size) {
-  count_one();
-  return __libc_realloc(old, size);
+  return may_allocate() ? __libc_realloc(old, size) : nullptr;
 }
 void* memalign(std::size_t alignment, std::size_t size) {
-  count_one();
-  return __libc_memalign(alignment, size);
+  return may_allocate() ? __libc_memalign(alignment, size) : nullptr;
 }
 void* aligned_alloc(std::size_t alignment, std::size_t size) {
-  count_one();
-  return __libc_memalign(alignment, size);
+  return may_allocate() ? __libc_memalign(alignment, size) : nullptr;
 }
 int posix_memalign(void** out, std::size_t alignment, std::size_t size) {
-  count_one();
-  *out = __libc_memalign(alignment, size);
+  *out = may_allocate() ? __libc_memalign(alignment, size) : nullptr;
   return *out == nullptr ? ENOMEM : 0;
 }
 }
@@ -75,6 +83,14 @@ long AllocationCount::count() const {
 
 long AllocationCount::back_end_count() const {
   return back_end_allocations.load() - back_end_at_start_;
+}
+
+NoMemoryAfter::NoMemoryAfter(long allowed) {
+  allowed_allocations = allowed;
+}
+
+NoMemoryAfter::~NoMemoryAfter() {
+  allowed_allocations = -1;
 }
 
 }  // namespace signorini::lcp

@@ -18,4 +18,21 @@ class AllocationCount {
   long back_end_at_start_;
 };
 
+/// While it lives, this thread is given no memory after its next `allowed` allocations: malloc and
+/// its like return null, operator new throws. A sparse back-end (lcp/back_end.h) is given what it
+/// asks for: Eigen's SparseLU writes through a null of malloc. Not under the sanitizers, which own
+/// malloc.
+class NoMemoryAfter {
+ public:
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  static constexpr bool kWorks = false;
+#else
+  static constexpr bool kWorks = true;
+#endif
+  explicit NoMemoryAfter(long allowed);
+  ~NoMemoryAfter();
+  NoMemoryAfter(const NoMemoryAfter&) = delete;
+  NoMemoryAfter& operator=(const NoMemoryAfter&) = delete;
+};
+
 }  // namespace signorini::lcp
