@@ -13,8 +13,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kProximal = 1e-9;
 constexpr double kLeastProximal = 1e-12;
 constexpr int kMostProximalSteps = 12;
-// Rounds of seek_inside(), and what a round must leave of the largest violation to go on.
-constexpr int kMostRounds = 15;
+// What a round of seek_inside() must leave of the largest violation to go on.
 constexpr double kHelps = 0.9;
 constexpr double kRounding = 1e-14;
 // The number of wrong rows must fall from one set to the next; several may grow for once.
@@ -41,7 +40,7 @@ double ActiveSetNewton::improve(ScaledProblem& problem, Vector& x, std::vector<R
     }
     solve_on_set(problem, x, state);
     if (problem.system().is_symmetric()) {
-      seek_inside(problem, x, state);
+      seek_inside(problem, x, state, limits.rounds, most_wrong);
     }
     clamped_ = x.cwiseMax(problem.lower()).cwiseMin(problem.upper());
     if (clamped_ != x) {
@@ -100,16 +99,20 @@ void ActiveSetNewton::solve_on_set(ScaledProblem& problem, Vector& x,
 /// at hand, which ends inside if the plane has an inside (Motzkin, Schoenberg 1954, relaxation with
 /// factor 2). Gives up as soon as it does not help: without redundancy the point comes back.
 void ActiveSetNewton::seek_inside(ScaledProblem& problem, Vector& x,
-                                  const std::vector<RowState>& state) {
+                                  const std::vector<RowState>& state, int rounds,
+                                  double most_outside) {
   double before = kInfinity;
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < rounds; ++round) {
     double most = 0.0;
+    int outside = 0;
     for (Index i = 0; i < x.size(); ++i) {
       if (state[i] == RowState::kBetween) {
-        most = std::max({most, problem.lower()[i] - x[i], x[i] - problem.upper()[i]});
+        const double violation = std::max(problem.lower()[i] - x[i], x[i] - problem.upper()[i]);
+        outside += violation > 0.0 ? 1 : 0;
+        most = std::max(most, violation);
       }
     }
-    if (most == 0.0 || most > kHelps * before) {
+    if (most == 0.0 || most > kHelps * before || outside > most_outside) {
       return;
     }
     before = most;

@@ -28,6 +28,7 @@ class ActiveSetNewton {
   struct Limits {
     int factorizations = 6;    ///< >= 1
     double wrong_share = 0.1;  ///< gives up where more of the rows have a wrong sign at first
+    int rounds = 15;           ///< of looking for an inside of what redundant rows leave open
   };
 
   /// Gives up early where the number of wrong rows does not fall.
@@ -40,7 +41,8 @@ class ActiveSetNewton {
 
  private:
   void solve_on_set(ScaledProblem& problem, Vector& x, const std::vector<RowState>& state);
-  void seek_inside(ScaledProblem& problem, Vector& x, const std::vector<RowState>& state);
+  void seek_inside(ScaledProblem& problem, Vector& x, const std::vector<RowState>& state,
+                   int rounds, double most_outside);
   int correct_set(const ScaledProblem& problem, const Vector& x, std::vector<RowState>& state);
 
   Vector e_, h_, dx_, gradient_, clamped_;

@@ -1,4 +1,5 @@
 #include <signorini/lcp/auto_solver.h>
+#include <signorini/lcp/mass_ratio.h>
 #include <signorini/lcp/symmetric_lcp.h>
 
 #include <algorithm>
@@ -26,25 +27,6 @@ constexpr double kRoughTolerance = 1e-5;
 constexpr double kCaution = 1.5;  // rates fall as sweeps go on
 // From an iterate worse than this the interior point needs more factorisations than from none.
 constexpr double kWarmEnough = 1e-4;
-
-/// Largest over smallest mass, by the first degree of freedom of every block; at least 1.
-double mass_ratio(const BlockMass& mass, std::vector<double>& unit, std::vector<double>& column) {
-  double most = 0.0;
-  double least = kInfinity;
-  for (int b = 0; b < mass.block_count(); ++b) {
-    const std::size_t size = static_cast<std::size_t>(mass.dimension(b));
-    if (size == 0) {
-      continue;
-    }
-    unit.assign(size, 0.0);
-    column.resize(size);
-    unit[0] = 1.0;
-    mass.apply_inverse(b, unit.data(), column.data());
-    most = std::max(most, column[0]);
-    least = std::min(least, column[0]);
-  }
-  return least > 0.0 && std::isfinite(least) ? std::max(most / least, 1.0) : kInfinity;
-}
 
 /// Adds a counter that may be absent (-1).
 void add(int& sum, int counter) {
@@ -87,9 +69,8 @@ void AutoSolver::choose(const Problem& problem) {
   } else if (factored) {
     const bool sweeps_may_win =
         settings_.tolerance >= kRoughTolerance || n > kRowsForAccurateSweeps;
-    sweeps_first_ =
-        settings_.most_sweeps > 0 && sweeps_may_win &&
-        mass_ratio(std::get<FactoredMatrix>(problem.M).mass, unit_, column_) <= kMassRatioForSweeps;
+    sweeps_first_ = settings_.most_sweeps > 0 && sweeps_may_win &&
+                    mass_ratio(std::get<FactoredMatrix>(problem.M).mass) <= kMassRatioForSweeps;
     chain_.push_back({"interior-point", "factored and large"});
   } else {
     if (symmetric) {

@@ -105,7 +105,6 @@ class AutoSolver : public Solver {
   Certificate best_certificate_;
   Status best_status_ = Status::kNotRun;
   std::string_view best_solver_;
-  std::vector<double> unit_, column_;
 };
 
 }  // namespace signorini::lcp

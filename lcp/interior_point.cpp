@@ -1,6 +1,7 @@
 #include <signorini/lcp/active_set_newton.h>
 #include <signorini/lcp/body_space_system.h>
 #include <signorini/lcp/interior_point.h>
+#include <signorini/lcp/mass_ratio.h>
 #include <signorini/lcp/number_text.h>
 #include <signorini/lcp/proximal_newton.h>
 #include <signorini/lcp/scaled_problem.h>
@@ -131,6 +132,9 @@ class InteriorPoint::Workspace {
     ShiftedSystem& system = body_space_ ? bodies_ : *given_;
     system.set(problem.M);
     problem_.set(problem, system);
+    // Above this ratio the inside of what redundant rows leave open is found too slowly.
+    constexpr double kAlike = 100.0;
+    are_alike_ = body_space_ && mass_ratio(std::get<FactoredMatrix>(problem.M).mass) <= kAlike;
     iterations_ = 0;
     const Status ending = run(warm_start);
     if (proximal_ > settings_.proximal) {
@@ -147,6 +151,7 @@ class InteriorPoint::Workspace {
  private:
   [[nodiscard]] Status run(const Vector* warm_start);
   [[nodiscard]] bool start_warm(const Vector& warm_start);
+  [[nodiscard]] bool start_on_all_rows();
   void start_cold(double size_of_x);
   void set_barriers();
   [[nodiscard]] Status interior_point(bool cold);
@@ -161,6 +166,7 @@ class InteriorPoint::Workspace {
   const Deadline* deadline_ = nullptr;
   bool body_space_ = false;
   bool forces_add_up_ = false;  // contacts of bodies, and nothing that limits a force
+  bool are_alike_ = false;      // the masses
   BodySpaceSystem bodies_;
   std::unique_ptr<ShiftedSystem> given_;
   ScaledProblem problem_;
@@ -197,6 +203,9 @@ Status InteriorPoint::Workspace::run(const Vector* warm_start) {
     return Status::kStalled;  // solved: the certificate will say so
   }
   if (warm_start != nullptr && start_warm(*warm_start)) {
+    return Status::kStalled;
+  }
+  if (warm_start == nullptr && forces_add_up_ && are_alike_ && start_on_all_rows()) {
     return Status::kStalled;
   }
   const Status ending = interior_point(warm_start == nullptr);
@@ -311,6 +320,19 @@ bool InteriorPoint::Workspace::start_warm(const Vector& warm_start) {
     }
   }
   return false;
+}
+
+/// Tries the set of all rows from x = 0, where all contacts press at rest. @return whether the
+/// problem is solved
+bool InteriorPoint::Workspace::start_on_all_rows() {
+  constexpr ActiveSetNewton::Limits kLimits = {
+      .factorizations = 3, .wrong_share = 0.06, .rounds = 4};
+  trial_ = x_;
+  guess_.assign(problem_.size(), RowState::kBetween);
+  const bool solved = active_set_.improve(problem_, trial_, guess_, kLimits, settings_.tolerance) <=
+                      settings_.tolerance;
+  guess_.clear();
+  return solved;
 }
 
 /// Factors A + Y/S + V/T + proximal. Where that fails the proximal term grows: it changes the path,

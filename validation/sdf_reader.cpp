@@ -233,11 +233,17 @@ class SceneBuilder {
     Vec3 com = vector(inertial.Pose().Pos());
     if (body.is_dynamic() && sdf_extras_.auto_inertia.contains(SdfSurvey::path(*link.Element()))) {
       com = compute_inertia(link, colliders, body);
-    } else if (body.is_dynamic() && link.Element()->HasElement("inertial") && !gives_mass(link)) {
+    } else if (body.is_dynamic() && link.Element()->HasElement("inertial") &&
+               !gives(link, "mass")) {
       scene_.notices.push_back("body '" + name +
                                "' has an <inertial> without <mass>: 1 kg, SDFormat's default "
                                "(auto=\"true\" is known in the scene's own file alone, not in an "
                                "included one)");
+    } else if (body.is_dynamic() && link.Element()->HasElement("inertial") &&
+               !gives(link, "inertia")) {
+      scene_.notices.push_back("body '" + name +
+                               "' has a <mass> without <inertia>: 1 kg m^2 about every axis, "
+                               "SDFormat's default");
     }
     BodyState state;
     state.x = link_pose * com;
@@ -252,9 +258,10 @@ class SceneBuilder {
     return true;
   }
 
-  static bool gives_mass(const sdf::Link& link) {
-    const auto mass = link.Element()->GetElement("inertial")->FindElement("mass");
-    return mass != nullptr && mass->GetExplicitlySetInFile();
+  /// Whether the link's <inertial> has this element in the file.
+  static bool gives(const sdf::Link& link, const std::string& element) {
+    const auto given = link.Element()->GetElement("inertial")->FindElement(element);
+    return given != nullptr && given->GetExplicitlySetInFile();
   }
 
   /// <inertial auto="true">: mass and inertia from the shapes and their <density>, that of the

@@ -1,4 +1,5 @@
 #include <signorini/lcp/factored_matrix.h>
+#include <signorini/lcp/mass_ratio.h>
 
 #include <Eigen/Cholesky>
 #include <cmath>
@@ -196,6 +197,17 @@ TEST(BlockMass, AppliesAMassAndItsInverseAlike) {
   EXPECT_LE((M * by_mass - x).norm(), 100 * kEpsilon * x.norm());
   EXPECT_EQ(mass.offset(1), 3);
   EXPECT_EQ(mass.degrees_of_freedom(), 6);
+}
+
+TEST(MassRatio, IsThatOfTheFirstDegreesOfFreedomHoweverBlocksAreGiven) {
+  BlockMass mass;
+  EXPECT_EQ(mass_ratio(mass), 1.0);
+  mass.add_inverse(Matrix{{0.5}});
+  EXPECT_EQ(mass_ratio(mass), 1.0);
+  mass.add_mass(Matrix{{8.0, 0.0}, {0.0, 1e6}});
+  EXPECT_NEAR(mass_ratio(mass), 4.0, 4.0 * 4.0 * kEpsilon);
+  mass.add_inverse(Matrix{{0.0}});  // moves under no force
+  EXPECT_EQ(mass_ratio(mass), std::numeric_limits<double>::infinity());
 }
 
 }  // namespace

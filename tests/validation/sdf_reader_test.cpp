@@ -33,6 +33,17 @@ TEST(SdfReader, InertialWithoutMassIsNamed) {
   EXPECT_FALSE(mentions(read(box_model(pose + "<mass>1</mass></inertial>")), "without <mass>"));
 }
 
+TEST(SdfReader, MassWithoutInertiaIsNamed) {
+  const Scene scene = read(box_model("<inertial><mass>2</mass></inertial>"));
+  EXPECT_EQ(scene.bodies[0].mass, 2.0);
+  EXPECT_EQ(scene.bodies[0].inertia, Mat3::Identity());
+  EXPECT_TRUE(mentions(scene, "'brick' has a <mass> without <inertia>: 1 kg m^2"));
+  EXPECT_FALSE(mentions(
+      read(box_model("<inertial><mass>2</mass><inertia><ixx>2</ixx><iyy>2</iyy><izz>2</izz>"
+                     "</inertia></inertial>")),
+      "without <inertia>"));
+}
+
 TEST(SdfReader, PosesGoThroughTheFrameGraph) {
   const Scene scene = read("<frame name=\"shelf\"><pose>0 0 2 0 0 0</pose></frame>" +
                            box_model("<pose relative_to=\"peg\">0 0 1 0 0 0</pose>", "",
