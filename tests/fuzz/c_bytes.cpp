@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <string>
 
 namespace signorini::testing {
 namespace {
@@ -125,6 +126,14 @@ void solve(ByteReader& bytes, Session& s) {
   }
 }
 
+void set_dial(ByteReader& bytes, Session& s) {
+  constexpr std::array kPositions = {"preview", "game", "engineering", "reference", "1e-6",
+                                     "",        "x"};
+  const char* position = kPositions[bytes.below(static_cast<int>(kPositions.size()))];
+  check(signorini_contact_solver_set_text(s.contact_solver, "accuracy", position));
+  check(signorini_contact_solver_set_number(s.contact_solver, "budget_work", bytes.number()));
+}
+
 void set_setting(ByteReader& bytes, Session& s) {
   constexpr std::array kNames = {"tolerance",       "max_iterations",     "time_limit",
                                  "certify_islands", "friction_model",     "pyramid_sides",
@@ -137,6 +146,9 @@ void set_setting(ByteReader& bytes, Session& s) {
   }
   check(signorini_solver_set_number(s.solver, name, value));
   check(signorini_contact_solver_set_number(s.contact_solver, name, value));
+  if (std::strcmp(name, "no such thing") == 0) {  // so that other kept inputs mean what they meant
+    set_dial(bytes, s);
+  }
 }
 
 void solve_contacts(ByteReader& bytes, Session& s) {
@@ -175,6 +187,9 @@ void solve_contacts(ByteReader& bytes, Session& s) {
     require(signorini_contact_result_body_count(s.contact_result) == body_count &&
                 signorini_contact_result_contact_count(s.contact_result) == contact_count,
             "every body and contact has its numbers");
+    const std::string accuracy = signorini_contact_result_accuracy(s.contact_result);
+    require(!accuracy.empty() || signorini_contact_result_work(s.contact_result) == 0.0,
+            "work is counted with the dial");
   }
 }
 
