@@ -45,10 +45,11 @@ function(signorini_compile_options target)
   endif()
 endfunction()
 
-# The tests' own code is compiled faster and runs slower; what they test is compiled as ever.
+# The tests' own code is compiled faster and runs slower; what they test is compiled as ever. (Under
+# the sanitizers, of type RelWithDebInfo, a test takes half as long to compile with -O0 as with -O1.)
 function(signorini_test_options target)
   signorini_compile_options(${target})
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1> $<$<CONFIG:RelWithDebInfo>:-O0>)
 endfunction()
 
 # signorini_library(NAME SOURCES ... DEPENDS ... [EXPORTS MAP]): target signorini_NAME, alias
