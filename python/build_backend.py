@@ -1,7 +1,8 @@
 """The PEP 517 back-end of `pip install .`: CMake builds and installs, this packs the wheel.
 
 The environment variable SIGNORINI_CMAKE_ARGS adds CMake options, for example
--DSIGNORINI_WITH_GMP=OFF. The standard library alone.
+-DSIGNORINI_WITH_GMP=OFF. SIGNORINI_WHEEL_BUILD names a build folder that has the module already, built
+for this Python: it is packed as it is. The standard library alone.
 """
 
 import base64
@@ -46,9 +47,18 @@ def _tag():
     return f"{abi}-{abi}-{platform}"
 
 
+def _install(build, staged):
+    command = ["cmake", "--install", str(build), "--prefix", str(staged), "--component", "python"]
+    subprocess.run(command, check=True)
+
+
 def _build():
     """Configures, builds and installs. Returns the folder that holds the package."""
     staged = BUILD / "stage"
+    built = os.environ.get("SIGNORINI_WHEEL_BUILD")
+    if built:
+        _install(ROOT / built, staged)
+        return staged
     options = [
         "-DCMAKE_BUILD_TYPE=Release",
         "-DBUILD_SHARED_LIBS=OFF",
@@ -62,10 +72,10 @@ def _build():
     commands = (
         ["cmake", "-S", str(ROOT), "-B", str(BUILD), "-G", "Ninja", *options],
         ["cmake", "--build", str(BUILD), "--target", "signorini_python", "-j", jobs],
-        ["cmake", "--install", str(BUILD), "--prefix", str(staged), "--component", "python"],
     )
     for command in commands:
         subprocess.run(command, check=True)
+    _install(BUILD, staged)
     return staged
 
 
