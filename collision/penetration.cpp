@@ -13,18 +13,29 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct Face {
   std::array<int, 3> corners;
-  Vec3 normal = Vec3::Zero();  ///< outward, unit
-  double offset = 0.0;         ///< of its plane; > 0: the origin is inside
-  bool is_final = false;       ///< on the surface, to tolerance
-  bool is_seen = false;        ///< from the point that is being added
+  std::array<int, 3> beyond{};  ///< the face across the edge from corner k to corner k + 1
+  Vec3 normal = Vec3::Zero();   ///< outward, unit
+  double offset = 0.0;          ///< of its plane; > 0: the origin is inside
+  bool is_final = false;        ///< on the surface, to tolerance
+  bool is_seen = false;         ///< from the point that is being added
+  bool is_gone = false;         ///< its place is free
+};
+
+/// An edge between faces that are seen and one that is not, as it runs around those.
+struct HorizonEdge {
+  int from;
+  int to;
+  int beyond;  ///< the face that is not seen
 };
 
 /// What a polytope is made of: kept from query to query.
 struct PolytopeMemory {
   std::vector<Vec3> points;
   std::vector<Face> faces;
-  std::vector<Face*> open;
-  std::vector<std::array<int, 2>> horizon;
+  std::vector<int> open;
+  std::vector<int> gone;  ///< the places of faces that a new one may take
+  std::vector<HorizonEdge> horizon;
+  std::vector<int> starting;  ///< of each point: the new face whose horizon edge starts there
 };
 
 class Polytope {
@@ -38,10 +49,14 @@ class Polytope {
         points_(memory.points),
         faces_(memory.faces),
         open_(memory.open),
-        horizon_(memory.horizon) {
+        gone_(memory.gone),
+        horizon_(memory.horizon),
+        starting_(memory.starting) {
     found_.clear();
     points_.clear();
     faces_.clear();
+    gone_.clear();
+    starting_.assign(kMostPoints, -1);
   }
 
   /// Leaves the directions in `found`.
@@ -50,16 +65,16 @@ class Polytope {
       return;
     }
     while (static_cast<int>(points_.size()) < kMostPoints) {
-      Face* const nearest = nearest_face();
-      if (nearest == nullptr || nearest->offset > least_ + tolerance_) {
+      const int nearest = nearest_face();
+      if (nearest < 0 || faces_[nearest].offset > least_ + tolerance_) {
         break;
       }
-      const Vec3 u = nearest->normal;
+      const Vec3 u = faces_[nearest].normal;
       const Vec3 point = support(u);
-      if (u.dot(point) - nearest->offset <= tolerance_) {
-        nearest->is_final = true;
+      if (u.dot(point) - faces_[nearest].offset <= tolerance_) {
+        faces_[nearest].is_final = true;
       } else {
-        add(*nearest, point);
+        add(nearest, point);
       }
     }
     // By insertion, which is stable and needs no memory.
@@ -126,10 +141,11 @@ class Polytope {
     if (height > 0.0) {
       std::swap(points_[1], points_[2]);
     }
-    add_face(0, 1, 2);
-    add_face(0, 3, 1);
-    add_face(1, 3, 2);
-    add_face(2, 3, 0);
+    faces_ = {face_of(0, 1, 2), face_of(0, 3, 1), face_of(1, 3, 2), face_of(2, 3, 0)};
+    faces_[0].beyond = {1, 2, 3};
+    faces_[1].beyond = {3, 2, 0};
+    faces_[2].beyond = {1, 3, 0};
+    faces_[3].beyond = {2, 1, 0};
     return true;
   }
 
@@ -141,20 +157,24 @@ class Polytope {
     return measure(p) >= measure(q) ? p : q;
   }
 
-  void add_face(int i, int j, int k) {
+  [[nodiscard]] Face face_of(int i, int j, int k) const {
     Face face{{i, j, k}};
     const Vec3 area = (points_[j] - points_[i]).cross(points_[k] - points_[i]);
     const double norm = area.norm();
     face.normal = norm > 0.0 ? Vec3(area / norm) : Vec3(Vec3::Zero());
     face.offset = norm > 0.0 ? face.normal.dot(points_[i]) : kInfinity;
-    faces_.push_back(face);
+    return face;
   }
 
-  Face* nearest_face() {
-    Face* nearest = nullptr;
-    for (Face& face : faces_) {
-      if (!face.is_final && (nearest == nullptr || face.offset < nearest->offset)) {
-        nearest = &face;
+  /// Its number; -1: all are final.
+  [[nodiscard]] int nearest_face() const {
+    int nearest = -1;
+    double least = kInfinity;
+    for (int f = 0; f < static_cast<int>(faces_.size()); ++f) {
+      const Face& face = faces_[f];
+      if (!face.is_final && !face.is_gone && (nearest < 0 || face.offset < least)) {
+        nearest = f;
+        least = face.offset;
       }
     }
     return nearest;
@@ -162,46 +182,77 @@ class Polytope {
 
   /// Replaces the faces that the point sees: from `first` on, across edges, so that rounding among
   /// faces that are nearly coplanar with the point cannot tear the surface.
-  void add(Face& first, const Vec3& point) {
-    first.is_seen = true;
-    open_.assign({&first});
+  void add(int first, const Vec3& point) {
+    find_horizon(first, point);
+    const int number = static_cast<int>(points_.size());
+    points_.push_back(point);
+    for (const HorizonEdge& edge : horizon_) {
+      const int f = place_for_face();
+      faces_[f] = face_of(edge.from, edge.to, number);
+      faces_[f].beyond = {edge.beyond, f, f};
+      link(edge.beyond, edge.to, f);
+      starting_[edge.from] = f;
+    }
+    // The new faces among themselves: around the new point. Where rounding has made the horizon
+    // pass a point twice one of them keeps itself as its neighbour.
+    for (const HorizonEdge& edge : horizon_) {
+      const int f = starting_[edge.from];
+      const int next = starting_[edge.to];
+      if (next >= 0) {
+        faces_[f].beyond[1] = next;
+        faces_[next].beyond[2] = f;
+      }
+    }
+    for (const HorizonEdge& edge : horizon_) {
+      starting_[edge.from] = -1;
+    }
+  }
+
+  /// Frees the faces that are seen and lists the edges around them.
+  void find_horizon(int first, const Vec3& point) {
+    faces_[first].is_seen = true;
+    open_.assign({first});
     horizon_.clear();
-    while (!open_.empty()) {
-      const Face& face = *open_.back();
-      open_.pop_back();
+    for (std::size_t i = 0; i < open_.size(); ++i) {
+      const Face& face = faces_[open_[i]];
       for (int k = 0; k < 3; ++k) {
-        const int from = face.corners[k];
-        const int to = face.corners[(k + 1) % 3];
-        Face& next = face_along(to, from);
+        Face& next = faces_[face.beyond[k]];
         if (next.is_seen) {
           continue;
         }
         if (next.normal.dot(point) > next.offset) {
           next.is_seen = true;
-          open_.push_back(&next);
+          open_.push_back(face.beyond[k]);
         } else {
-          horizon_.push_back({from, to});
+          horizon_.push_back({face.corners[k], face.corners[(k + 1) % 3], face.beyond[k]});
         }
       }
     }
     // A face that was seen after one of its edges had been listed takes the edge with it.
-    std::erase_if(horizon_, [&](const std::array<int, 2>& edge) {
-      return face_along(edge[1], edge[0]).is_seen;
-    });
-    std::erase_if(faces_, [](const Face& face) { return face.is_seen; });
-    const int number = static_cast<int>(points_.size());
-    points_.push_back(point);
-    for (const auto& [from, to] : horizon_) {
-      add_face(from, to, number);
+    std::erase_if(horizon_, [&](const HorizonEdge& edge) { return faces_[edge.beyond].is_seen; });
+    for (const int f : open_) {
+      faces_[f].is_gone = true;
+      gone_.push_back(f);
     }
   }
 
-  /// The face around which the edge runs this way.
-  Face& face_along(int from, int to) {
-    return *std::find_if(faces_.begin(), faces_.end(), [&](const Face& face) {
-      const auto& [i, j, k] = face.corners;
-      return (i == from && j == to) || (j == from && k == to) || (k == from && i == to);
-    });
+  int place_for_face() {
+    if (gone_.empty()) {
+      faces_.emplace_back();
+      return static_cast<int>(faces_.size()) - 1;
+    }
+    const int place = gone_.back();
+    gone_.pop_back();
+    return place;
+  }
+
+  /// The edge of a face that starts at a point leads to another face now.
+  void link(int face, int from, int to_face) {
+    for (int k = 0; k < 3; ++k) {
+      if (faces_[face].corners[k] == from) {
+        faces_[face].beyond[k] = to_face;
+      }
+    }
   }
 
   const Convex& a_;
@@ -211,8 +262,10 @@ class Polytope {
   std::vector<Axis>& found_;
   std::vector<Vec3>& points_;
   std::vector<Face>& faces_;
-  std::vector<Face*>& open_;
-  std::vector<std::array<int, 2>>& horizon_;
+  std::vector<int>& open_;
+  std::vector<int>& gone_;
+  std::vector<HorizonEdge>& horizon_;
+  std::vector<int>& starting_;
 };
 
 }  // namespace
