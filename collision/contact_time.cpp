@@ -112,9 +112,10 @@ class Search {
 
   [[nodiscard]] std::optional<double> run() {
     Moment here = at(0.0);
+    Moment above = here;         // the last one at the level
+    Moment above_before = here;  // the one before it
     level_ = std::min(0.0, here.gap);
     const bool touching = here.gap <= 0.5 * tolerance_;
-    double last_above = 0.0;
     double step = duration_;
     double sampling_step = 0.0;
     for (int intervals = 0; here.time < duration_; ++intervals) {
@@ -136,10 +137,19 @@ class Search {
         continue;
       }
       if (next.gap <= level_ - 0.5 * tolerance_) {
-        return touching && last_above == 0.0 ? 0.0 : crossing_time(last_above, next.time);
+        // In a longer step it may have been higher since the last but one time at the level.
+        if (slack_ > tolerance_) {
+          const Moment top = highest(above_before.time, next.time);
+          if (top.gap > level_) {
+            above = top;
+            level_ = std::min(0.0, top.gap);
+          }
+        }
+        return touching && above.time == 0.0 ? 0.0 : crossing_time(above.time, next.time);
       }
       if (next.gap >= level_ - rounding_) {
-        last_above = next.time;
+        above_before = above;
+        above = next;
         level_ = std::max(level_, std::min(0.0, next.gap));
       }
       here = next;
@@ -230,6 +240,26 @@ class Search {
     }
     const double crossing = (here.gap - target) / (here.gap - next.gap);
     return step * std::clamp(crossing, 0.01, 0.99);
+  }
+
+  /// The moment at which a gap that rises and then falls is largest, by golden section.
+  [[nodiscard]] Moment highest(double low, double high) const {
+    constexpr double kGolden = 0.6180339887498949;
+    constexpr int kSections = 60;  // of the interval 3e-13
+    Moment left = at(high - kGolden * (high - low));
+    Moment right = at(low + kGolden * (high - low));
+    for (int k = 0; k < kSections; ++k) {
+      if (left.gap >= right.gap) {
+        high = right.time;
+        right = left;
+        left = at(high - kGolden * (high - low));
+      } else {
+        low = left.time;
+        left = right;
+        right = at(low + kGolden * (high - low));
+      }
+    }
+    return left.gap >= right.gap ? left : right;
   }
 
   /// A time in [low, high] at which the gap crosses the level, by bisection to the resolution of

@@ -32,7 +32,8 @@ struct MovingShape {
 /// may pass. What is certain is that d falls nowhere before the returned time more than eps below
 /// what it was at the start; after the first 1000 intervals more than eps, or a tenth of the
 /// overlap that was left where an interval began, below the level there (so the work of an overlap
-/// that shrinks does not grow with 1/eps).
+/// that shrinks does not grow with 1/eps). Where a look finds it below the level, its largest value
+/// in the last two such intervals becomes the level.
 ///
 /// Method: conservative advancement with two certificates that an interval [t0, t1] is free. One
 /// from the speed bound L: d >= (d(t0) + d(t1) - L (t1 - t0)) / 2. One along a fixed direction n
