@@ -1,5 +1,6 @@
 #include <signorini/collision/capsule_pairs.h>
 #include <signorini/collision/convex_shapes.h>
+#include <signorini/collision/segments.h>
 
 #include <algorithm>
 #include <array>
@@ -11,31 +12,16 @@ namespace {
 /// Segments within this angle (radians) of parallel touch along a stretch, not in a point.
 constexpr double kParallelSegments = 1e-7;
 
-/// A sphere's centre (half = 0) or a capsule's segment.
-struct Segment {
-  Vec3 centre;
-  Vec3 axis;
-  double half;
+/// A sphere's centre (half = 0) or a capsule's segment, and its radius.
+struct RoundedSegment : LineSegment {
   double radius;
 
-  Segment(const Sphere& sphere, const Pose& pose)
-      : centre(pose.position), axis(Vec3::UnitZ()), half(0.0), radius(sphere.radius) {}
-  Segment(const Capsule& capsule, const Pose& pose)
-      : centre(pose.position),
-        axis(pose.orientation * Vec3::UnitZ()),
-        half(capsule.half_length),
+  RoundedSegment(const Sphere& sphere, const Pose& pose)
+      : LineSegment{pose.position}, radius(sphere.radius) {}
+  RoundedSegment(const Capsule& capsule, const Pose& pose)
+      : LineSegment{pose.position, pose.orientation * Vec3::UnitZ(), capsule.half_length},
         radius(capsule.radius) {}
 
-  [[nodiscard]] Vec3 at(double t) const { return centre + t * axis; }
-  [[nodiscard]] double nearest_to(const Vec3& point) const {
-    return std::clamp(axis.dot(point - centre), -half, half);
-  }
-  [[nodiscard]] Feature feature(double t) const {
-    if (half == 0.0 || std::abs(t) < half) {
-      return feature::kSide;
-    }
-    return t < 0.0 ? feature::kLow : feature::kHigh;
-  }
   [[nodiscard]] LocalSurface surface(double t) const {
     if (half == 0.0 || std::abs(t) == half) {
       return LocalSurface::sphere(radius);
@@ -46,39 +32,7 @@ struct Segment {
   }
 };
 
-/// Parameters of a pair of points.
-struct Nearest {
-  double s;
-  double t;
-  Vec3 between;  ///< a(s) - b(t)
-
-  Nearest(const Segment& a, double s_, const Segment& b, double t_)
-      : s(s_), t(t_), between(a.at(s_) - b.at(t_)) {}
-};
-
-/// Ericson 2005, 5.1.9: from the crossing of the lines, held within the ends; each end of either
-/// against the other segment besides, so that rounding of nearly parallel lines costs nothing.
-Nearest nearest_points(const Segment& a, const Segment& b) {
-  const Vec3 offset = b.centre - a.centre;
-  const double sine_squared = a.axis.cross(b.axis).squaredNorm();
-  const double crossing =
-      sine_squared > 0.0 ? (a.axis - a.axis.dot(b.axis) * b.axis).dot(offset) / sine_squared : 0.0;
-  const double t0 = b.nearest_to(a.at(std::clamp(crossing, -a.half, a.half)));
-  const double s0 = a.nearest_to(b.at(t0));
-  Nearest best(a, s0, b, b.nearest_to(a.at(s0)));
-  const auto offer = [&](const Nearest& other) {
-    if (other.between.squaredNorm() < best.between.squaredNorm()) {
-      best = other;
-    }
-  };
-  for (const double end : {-1.0, 1.0}) {
-    offer({a, end * a.half, b, b.nearest_to(a.at(end * a.half))});
-    offer({a, a.nearest_to(b.at(end * b.half)), b, end * b.half});
-  }
-  return best;
-}
-
-Vec3 normal_of(const Segment& a, const Segment& b, const Nearest& nearest) {
+Vec3 normal_of(const RoundedSegment& a, const RoundedSegment& b, const SegmentPoints& nearest) {
   if (!nearest.between.isZero(0.0)) {  // twice: denormal numbers lose digits in the first
     return nearest.between.stableNormalized().normalized();
   }
@@ -86,31 +40,31 @@ Vec3 normal_of(const Segment& a, const Segment& b, const Nearest& nearest) {
   return across.norm() > kParallelSegments ? Vec3(across.normalized()) : a.axis.unitOrthogonal();
 }
 
-double gap_of(const Segment& a, const Segment& b, const Nearest& nearest) {
+double gap_of(const RoundedSegment& a, const RoundedSegment& b, const SegmentPoints& nearest) {
   return nearest.between.stableNorm() - (a.radius + b.radius);
 }
 
-void add(const Segment& a, const Segment& b, const Nearest& nearest, const Vec3& N, double gap,
-         std::vector<Contact>& contacts) {
+void add(const RoundedSegment& a, const RoundedSegment& b, const SegmentPoints& nearest,
+         const Vec3& N, double gap, std::vector<Contact>& contacts) {
   const Vec3 point_a = a.at(nearest.s) - a.radius * N;
-  Contact contact = make_contact(point_a, point_a - gap * N, N, gap,
-                                 feature_pair_id(a.feature(nearest.s), b.feature(nearest.t)),
-                                 NormalOwner::kCurved);
+  Contact contact = make_contact(
+      point_a, point_a - gap * N, N, gap,
+      feature_pair_id(feature_at(a, nearest.s), feature_at(b, nearest.t)), NormalOwner::kCurved);
   contact.surface_a = a.surface(nearest.s);
   contact.surface_b = b.surface(nearest.t);
   contacts.push_back(contact);
 }
 
 /// The ends of the stretch along which two parallel segments face each other: of A along itself.
-bool overlap_of(const Segment& a, const Segment& b, std::array<double, 2>& stretch) {
+bool overlap_of(const RoundedSegment& a, const RoundedSegment& b, std::array<double, 2>& stretch) {
   const double centre = a.axis.dot(b.centre - a.centre);
   stretch = {std::max(-a.half, centre - b.half), std::min(a.half, centre + b.half)};
   return stretch[0] < stretch[1];
 }
 
-void find_between(const Segment& a, const Segment& b, double margin,
+void find_between(const RoundedSegment& a, const RoundedSegment& b, double margin,
                   std::vector<Contact>& contacts) {
-  const Nearest nearest = nearest_points(a, b);
+  const SegmentPoints nearest = nearest_points(a, b);
   const double gap = gap_of(a, b, nearest);
   if (gap > margin) {
     return;
@@ -129,7 +83,7 @@ void find_between(const Segment& a, const Segment& b, double margin,
     const bool is_end_of_a = std::abs(s) == a.half;
     const double end_b =
         b.axis.dot(a.axis) * (s - a.axis.dot(b.centre - a.centre)) < 0.0 ? -b.half : b.half;
-    const Nearest end(a, s, b, is_end_of_a ? t : end_b);
+    const SegmentPoints end(a, s, b, is_end_of_a ? t : end_b);
     const double end_gap = N.dot(end.between) - (a.radius + b.radius);
     if (end_gap <= std::max(margin, gap)) {
       add(a, b, end, N, end_gap, contacts);
@@ -143,8 +97,8 @@ void find_between(const Segment& a, const Segment& b, double margin,
 }  // namespace
 
 double distance(const Sphere& a, const Pose& pose_a, const Capsule& b, const Pose& pose_b) {
-  const Segment centre(a, pose_a);
-  const Segment segment(b, pose_b);
+  const RoundedSegment centre(a, pose_a);
+  const RoundedSegment segment(b, pose_b);
   return gap_of(centre, segment, nearest_points(centre, segment));
 }
 
@@ -154,12 +108,12 @@ bool test(const Sphere& a, const Pose& pose_a, const Capsule& b, const Pose& pos
 
 void find(const Sphere& a, const Pose& pose_a, const Capsule& b, const Pose& pose_b, double margin,
           std::vector<Contact>& contacts) {
-  find_between(Segment(a, pose_a), Segment(b, pose_b), margin, contacts);
+  find_between(RoundedSegment(a, pose_a), RoundedSegment(b, pose_b), margin, contacts);
 }
 
 double distance(const Capsule& a, const Pose& pose_a, const Capsule& b, const Pose& pose_b) {
-  const Segment first(a, pose_a);
-  const Segment second(b, pose_b);
+  const RoundedSegment first(a, pose_a);
+  const RoundedSegment second(b, pose_b);
   return gap_of(first, second, nearest_points(first, second));
 }
 
@@ -169,7 +123,7 @@ bool test(const Capsule& a, const Pose& pose_a, const Capsule& b, const Pose& po
 
 void find(const Capsule& a, const Pose& pose_a, const Capsule& b, const Pose& pose_b, double margin,
           std::vector<Contact>& contacts) {
-  find_between(Segment(a, pose_a), Segment(b, pose_b), margin, contacts);
+  find_between(RoundedSegment(a, pose_a), RoundedSegment(b, pose_b), margin, contacts);
 }
 
 }  // namespace signorini::collision::narrow

@@ -2,6 +2,7 @@
 #include <signorini/collision/pair_query.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 namespace signorini::collision::narrow {
@@ -22,11 +23,40 @@ Bounds near_bounds(const Shape& a, const Pose& pose_a, const Compound& b, const 
   return near;
 }
 
-std::vector<int> parts_near(const Bounds& near, const Compound& b) {
-  std::vector<int> result;
-  b.data->tree.visit_overlaps(near, [&](int part) { result.push_back(part); });
-  std::sort(result.begin(), result.end());
-  return result;
+/// What a query works on: kept from query to query of a thread. Against a compound A each part of B
+/// asks again, within the first query: parts are convex, so that two are enough.
+struct CompoundMemory {
+  struct Level {
+    std::vector<int> near;
+    std::vector<Contact> of_part;
+  };
+  std::array<Level, 2> levels;
+  std::size_t depth = 0;
+};
+
+class Lease {
+ public:
+  Lease() : level_(memory().levels.at(memory().depth)) { ++memory().depth; }
+  ~Lease() { --memory().depth; }
+  Lease(const Lease&) = delete;
+  Lease& operator=(const Lease&) = delete;
+
+  CompoundMemory::Level* operator->() { return &level_; }
+
+ private:
+  static CompoundMemory& memory() {
+    thread_local CompoundMemory of_this_thread;
+    return of_this_thread;
+  }
+
+  CompoundMemory::Level& level_;
+};
+
+/// In ascending order.
+void find_parts_near(const Bounds& near, const Compound& b, std::vector<int>& parts) {
+  parts.clear();
+  b.data->tree.visit_overlaps(near, [&](int part) { parts.push_back(part); });
+  std::sort(parts.begin(), parts.end());
 }
 
 }  // namespace
@@ -40,8 +70,9 @@ double compound_distance(const Shape& a, const Pose& pose_a, const Compound& b,
 }
 
 bool compound_test(const Shape& a, const Pose& pose_a, const Compound& b, const Pose& pose_b) {
-  const std::vector<int> near = parts_near(near_bounds(a, pose_a, b, pose_b, 0.0), b);
-  return std::any_of(near.begin(), near.end(), [&](int i) {
+  Lease memory;
+  find_parts_near(near_bounds(a, pose_a, b, pose_b, 0.0), b, memory->near);
+  return std::any_of(memory->near.begin(), memory->near.end(), [&](int i) {
     const CompoundPart& part = b.data->parts[i];
     return test_intersection(a, pose_a, part.shape, pose_b * part.local);
   });
@@ -49,11 +80,12 @@ bool compound_test(const Shape& a, const Pose& pose_a, const Compound& b, const 
 
 void find_compound_contacts(const Shape& a, const Pose& pose_a, const Compound& b,
                             const Pose& pose_b, double margin, std::vector<Contact>& contacts) {
-  std::vector<Contact> of_part;
-  for (const int i : parts_near(near_bounds(a, pose_a, b, pose_b, margin), b)) {
+  Lease memory;
+  find_parts_near(near_bounds(a, pose_a, b, pose_b, margin), b, memory->near);
+  for (const int i : memory->near) {
     const CompoundPart& part = b.data->parts[i];
-    find_intersection(a, pose_a, part.shape, pose_b * part.local, margin, of_part);
-    for (Contact& contact : of_part) {
+    find_intersection(a, pose_a, part.shape, pose_b * part.local, margin, memory->of_part);
+    for (Contact& contact : memory->of_part) {
       contact.feature_id |= std::uint64_t{kPartFeatures} * static_cast<std::uint64_t>(i);
       contacts.push_back(contact);
     }

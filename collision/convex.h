@@ -1,6 +1,7 @@
 #pragma once
 
 #include <signorini/collision/feature_id.h>
+#include <signorini/collision/segments.h>
 #include <signorini/core/model/contact.h>
 #include <signorini/core/model/types.h>
 
@@ -116,6 +117,8 @@ class Convex {
 
   /// The shape as a polyhedron; null: it is none, or is not met as one.
   [[nodiscard]] virtual const Polyhedron* polyhedron() const { return nullptr; }
+  /// The core as a segment, or (half = 0) a point; null: it is none. Only these have a rounding.
+  [[nodiscard]] virtual const LineSegment* segment() const { return nullptr; }
 
   [[nodiscard]] double rounding() const { return rounding_; }
   [[nodiscard]] const Vec3& centre() const { return centre_; }

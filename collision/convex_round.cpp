@@ -79,34 +79,50 @@ void PointCore::facet(const Vec3&, Facet& facet) const {
   facet.corners.push_back(corner(centre(), 0, 0, LocalSurface::sphere(rounding())));
 }
 
+Feature feature_at(const LineSegment& core, double t) {
+  if (core.half == 0.0 || std::abs(t) < core.half) {
+    return feature::kSide;
+  }
+  return t < 0.0 ? feature::kLow : feature::kHigh;
+}
+
+Stratum piece_at(const LineSegment& core, double t) {
+  const Feature feature = feature_at(core, t);
+  if (core.half == 0.0 || feature != feature::kSide) {
+    return vertex_stratum(core.at(t), feature);
+  }
+  Stratum line = vertex_stratum(core.centre, feature);
+  line.kind = Kind::kLine;
+  line.axis = core.axis;
+  line.range = {-core.half, core.half};
+  line.ends = {feature::kLow, feature::kHigh};
+  return line;
+}
+
 Vec3 SegmentCore::support(const Vec3& n) const {
-  return centre() + (n.dot(axis_) < 0.0 ? -half_ : half_) * axis_;
+  return core_.at(n.dot(core_.axis) < 0.0 ? -core_.half : core_.half);
 }
 
 void SegmentCore::add_strata(const Vec3& n, double angle, std::vector<Stratum>& strata) const {
-  const double along = n.dot(axis_);
+  const double along = n.dot(core_.axis);
   const bool sideways = std::abs(along) <= angle;
   if (sideways) {
-    Stratum line = vertex_stratum(centre(), feature::kSide);
-    line.kind = Kind::kLine;
-    line.axis = axis_;
-    line.range = {-half_, half_};
-    line.ends = {feature::kLow, feature::kHigh};
-    strata.push_back(line);
+    strata.push_back(piece_at(core_, 0.0));
   }
   if (sideways || along < 0.0) {
-    strata.push_back(vertex_stratum(centre() - half_ * axis_, feature::kLow));
+    strata.push_back(piece_at(core_, -core_.half));
   }
   if (sideways || along >= 0.0) {
-    strata.push_back(vertex_stratum(centre() + half_ * axis_, feature::kHigh));
+    strata.push_back(piece_at(core_, core_.half));
   }
 }
 
 void SegmentCore::facet(const Vec3&, Facet& facet) const {
   const LocalSurface ball = LocalSurface::sphere(rounding());
   facet.reset(feature::kSide, Vec3::Zero());
-  facet.corners.push_back(corner(centre() - half_ * axis_, feature::kLow, feature::kSide, ball));
-  facet.corners.push_back(corner(centre() + half_ * axis_, feature::kHigh, feature::kSide, ball));
+  for (const double end : {-core_.half, core_.half}) {
+    facet.corners.push_back(corner(core_.at(end), feature_at(core_, end), feature::kSide, ball));
+  }
 }
 
 CylinderCore::CylinderCore(const Cylinder& cylinder, const Pose& pose)

@@ -20,15 +20,24 @@ inline constexpr Feature kRimPoints = 16;
 inline constexpr Feature kRimChords = 32;
 }  // namespace feature
 
+/// The feature of a sphere (half = 0) or capsule at a point of its segment.
+[[nodiscard]] Feature feature_at(const LineSegment& core, double t);
+/// The piece of the segment's surface there.
+[[nodiscard]] Stratum piece_at(const LineSegment& core, double t);
+
 /// A point core: a sphere.
 class PointCore final : public Convex {
  public:
   PointCore(const Sphere& sphere, const Pose& pose)
-      : Convex(pose.position, sphere.radius, sphere.radius) {}
+      : Convex(pose.position, sphere.radius, sphere.radius), core_{pose.position} {}
 
   [[nodiscard]] Vec3 support(const Vec3& n) const override;
   void add_strata(const Vec3& n, double angle, std::vector<Stratum>& strata) const override;
   void facet(const Vec3& n, Facet& facet) const override;
+  [[nodiscard]] const LineSegment* segment() const override { return &core_; }
+
+ private:
+  LineSegment core_;
 };
 
 /// A segment: a capsule.
@@ -36,16 +45,15 @@ class SegmentCore final : public Convex {
  public:
   SegmentCore(const Capsule& capsule, const Pose& pose)
       : Convex(pose.position, capsule.half_length + capsule.radius, capsule.radius),
-        axis_(pose.orientation * Vec3::UnitZ()),
-        half_(capsule.half_length) {}
+        core_{pose.position, pose.orientation * Vec3::UnitZ(), capsule.half_length} {}
 
   [[nodiscard]] Vec3 support(const Vec3& n) const override;
   void add_strata(const Vec3& n, double angle, std::vector<Stratum>& strata) const override;
   void facet(const Vec3& n, Facet& facet) const override;
+  [[nodiscard]] const LineSegment* segment() const override { return &core_; }
 
  private:
-  Vec3 axis_;
-  double half_;
+  LineSegment core_;
 };
 
 class CylinderCore final : public Convex {

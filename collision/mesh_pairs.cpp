@@ -1,6 +1,6 @@
 #include <signorini/collision/convex_contacts.h>
-#include <signorini/collision/gjk.h>
 #include <signorini/collision/mesh_pairs.h>
+#include <signorini/collision/segments.h>
 #include <signorini/collision/separation.h>
 
 #include <algorithm>
@@ -25,15 +25,22 @@ constexpr Feature kBack = 7;
 /// A triangle as a flat convex polyhedron with two faces.
 class TriangleCore final : public Convex {
  public:
-  TriangleCore(const std::array<Vec3, 3>& corners, const Vec3& normal)
-      : Convex((corners[0] + corners[1] + corners[2]) / 3.0, size_of(corners), 0.0),
-        corners_(corners),
-        normal_(normal) {}
+  explicit TriangleCore(const Triangle& triangle)
+      : Convex(centre_of(triangle), size_of(triangle), 0.0), triangle_(triangle) {}
 
-  [[nodiscard]] const Vec3& normal() const { return normal_; }
-  [[nodiscard]] const Vec3& corner(int k) const { return corners_[k]; }
+  [[nodiscard]] const Triangle& triangle() const { return triangle_; }
+  /// The piece of an edge at a parameter of Triangle::edge_of().
+  [[nodiscard]] Stratum piece_at(int edge, double t) const {
+    const double half = triangle_.edge_of(edge).half;
+    if (std::abs(t) < half) {
+      return edge_piece(edge);
+    }
+    return vertex_piece(t < 0.0 ? edge : (edge + 1) % 3);
+  }
 
-  [[nodiscard]] Vec3 support(const Vec3& n) const override { return corners_[furthest(n)]; }
+  [[nodiscard]] Vec3 support(const Vec3& n) const override {
+    return triangle_.corners[furthest(n)];
+  }
 
   void add_strata(const Vec3& n, double angle, std::vector<Stratum>& strata) const override {
     const int v = furthest(n);
@@ -41,7 +48,7 @@ class TriangleCore final : public Convex {
     is_near[v] = true;
     int edges = 0;
     for (const int k : {v, (v + 2) % 3}) {
-      const Stratum stratum = edge(k);
+      const Stratum stratum = edge_piece(k);
       if (std::abs(stratum.axis.dot(n)) <= angle) {
         strata.push_back(stratum);
         is_near[k] = is_near[(k + 1) % 3] = true;
@@ -50,33 +57,32 @@ class TriangleCore final : public Convex {
     }
     for (int k = 0; k < 3; ++k) {
       if (is_near[k]) {
-        Stratum vertex;
-        vertex.feature = static_cast<Feature>(k);
-        vertex.anchor = corners_[k];
-        strata.push_back(vertex);
+        strata.push_back(vertex_piece(k));
       }
     }
     if (edges == 2) {
-      strata.push_back(edge((v + 1) % 3));
+      strata.push_back(edge_piece((v + 1) % 3));
     }
-    if (normal_.cross(n).norm() <= std::max(angle, 1e-15)) {
+    const Vec3& normal = triangle_.normal;
+    if (normal.cross(n).norm() <= std::max(angle, 1e-15)) {
       Stratum face;
       face.kind = Kind::kFace;
-      face.feature = normal_.dot(n) > 0.0 ? kFront : kBack;
-      face.anchor = corners_[v];
-      face.axis = normal_.dot(n) > 0.0 ? normal_ : Vec3(-normal_);
+      face.feature = normal.dot(n) > 0.0 ? kFront : kBack;
+      face.anchor = triangle_.corners[v];
+      face.axis = normal.dot(n) > 0.0 ? normal : Vec3(-normal);
       face.area = kFirst;
       strata.push_back(face);
     }
   }
 
   void facet(const Vec3& n, Facet& facet) const override {
-    const bool is_front = normal_.dot(n) >= 0.0;
-    facet.reset(is_front ? kFront : kBack, is_front ? normal_ : Vec3(-normal_));
+    const Vec3& normal = triangle_.normal;
+    const bool is_front = normal.dot(n) >= 0.0;
+    facet.reset(is_front ? kFront : kBack, is_front ? normal : Vec3(-normal));
     for (int i = 0; i < 3; ++i) {
       const int k = is_front ? i : 2 - i;
       const int edge = is_front ? k : (k + 2) % 3;
-      facet.corners.push_back({corners_[k], static_cast<Feature>(k),
+      facet.corners.push_back({triangle_.corners[k], static_cast<Feature>(k),
                                kEdges + static_cast<Feature>(edge), LocalSurface::vertex()});
     }
   }
@@ -85,58 +91,72 @@ class TriangleCore final : public Convex {
   /// More than any other face has: of two faces that meet flat, the triangle's carries the normal.
   static constexpr double kFirst = 1e300;
 
-  static double size_of(const std::array<Vec3, 3>& c) {
-    const Vec3 centre = (c[0] + c[1] + c[2]) / 3.0;
-    return std::max({(c[0] - centre).norm(), (c[1] - centre).norm(), (c[2] - centre).norm()});
+  static Vec3 centre_of(const Triangle& triangle) {
+    return (triangle.corners[0] + triangle.corners[1] + triangle.corners[2]) / 3.0;
+  }
+  static double size_of(const Triangle& triangle) {
+    const Vec3 centre = centre_of(triangle);
+    double squared = 0.0;
+    for (const Vec3& corner : triangle.corners) {
+      squared = std::max(squared, (corner - centre).squaredNorm());
+    }
+    return std::sqrt(squared);
   }
   [[nodiscard]] int furthest(const Vec3& n) const {
     int best = 0;
     for (int k = 1; k < 3; ++k) {
-      if (n.dot(corners_[k] - corners_[best]) > 0.0) {
+      if (n.dot(triangle_.corners[k] - triangle_.corners[best]) > 0.0) {
         best = k;
       }
     }
     return best;
   }
-  [[nodiscard]] Stratum edge(int k) const {
-    const Vec3& from = corners_[k];
-    const Vec3& to = corners_[(k + 1) % 3];
-    const double length = (to - from).norm();
+  [[nodiscard]] Stratum vertex_piece(int k) const {
+    Stratum vertex;
+    vertex.feature = static_cast<Feature>(k);
+    vertex.anchor = triangle_.corners[k];
+    return vertex;
+  }
+  [[nodiscard]] Stratum edge_piece(int k) const {
+    const LineSegment edge = triangle_.edge_of(k);
     Stratum stratum;
     stratum.kind = Kind::kLine;
     stratum.feature = kEdges + static_cast<Feature>(k);
-    stratum.anchor = from;
-    stratum.axis = (to - from) / length;
-    stratum.range = {0.0, length};
+    stratum.anchor = triangle_.corners[k];
+    stratum.axis = edge.axis;
+    stratum.range = {0.0, 2.0 * edge.half};
     stratum.ends = {static_cast<Feature>(k), static_cast<Feature>((k + 1) % 3)};
     return stratum;
   }
 
-  std::array<Vec3, 3> corners_;
-  Vec3 normal_;
+  Triangle triangle_;
 };
 
 TriangleCore core_of(const PlacedMesh& mesh, int t) {
-  const MeshData::Triangle& triangle = mesh.data.triangles[t];
-  std::array<Vec3, 3> corners;
+  const MeshData::Triangle& of_mesh = mesh.data.triangles[t];
+  Triangle triangle;
   for (int k = 0; k < 3; ++k) {
-    corners[k] = mesh.pose * mesh.data.vertices[triangle.vertices[k]];
+    triangle.corners[k] = mesh.axes * mesh.data.vertices[of_mesh.vertices[k]] + mesh.position;
   }
-  return {corners, mesh.pose.orientation * triangle.normal};
+  triangle.normal = mesh.axes * of_mesh.normal;
+  return TriangleCore(triangle);
 }
 
 /// How A meets one triangle.
 struct TriangleMeeting {
   double distance = kInfinity;
-  bool counts = false;  ///< the normal of that distance belongs to the feature that it is at
-  FacingFace face;      ///< the triangle's, on the side on which A is least deep
+  bool counts = false;  ///< the normal of that distance belongs to the edge or vertex that it is at
+  FacingFace face;      ///< the triangle's, on the side on which A is least deep; else it counts
 };
 
-FacingFace least_deep_face(const Convex& a, const TriangleCore& triangle) {
-  const double front = separation_along(a, triangle, triangle.normal());
-  const double back = separation_along(a, triangle, -triangle.normal());
-  return front >= back ? FacingFace{false, triangle.normal(), front}
-                       : FacingFace{false, -triangle.normal(), back};
+FacingFace least_deep_face(const Convex& a, const Triangle& triangle) {
+  const auto separation = [&](const Vec3& n) {
+    return n.dot(a.support(-n) - triangle.corners[0]) - a.rounding();
+  };
+  const double front = separation(triangle.normal);
+  const double back = separation(-triangle.normal);
+  return front >= back ? FacingFace{false, triangle.normal, front}
+                       : FacingFace{false, -triangle.normal, back};
 }
 
 /// No vertex next to the feature reaches further along N than it.
@@ -148,7 +168,7 @@ bool belongs(const PlacedMesh& mesh, int t, const Stratum& piece, const Vec3& N)
   const bool is_edge = piece.kind == Kind::kLine;
   const int k = static_cast<int>(is_edge ? piece.feature - kEdges : piece.feature);
   const Vec3& at = mesh.data.vertices[triangle.vertices[k]];
-  const Vec3 along = mesh.pose.orientation.conjugate() * N;
+  const Vec3 along = mesh.axes.transpose() * N;
   const std::vector<int>& others =
       is_edge ? mesh.data.opposite[triangle.edges[k]] : mesh.data.neighbours[triangle.vertices[k]];
   return std::all_of(others.begin(), others.end(), [&](int v) {
@@ -159,38 +179,66 @@ bool belongs(const PlacedMesh& mesh, int t, const Stratum& piece, const Vec3& N)
 
 /// Are A and the triangle further apart than `reach` along one of the directions that lie in its
 /// plane across its edges? (Then they are further apart.)
-bool is_beside(const Convex& a, const TriangleCore& triangle, double reach) {
+bool is_beside(const Convex& a, const Triangle& triangle, double reach) {
   for (int k = 0; k < 3; ++k) {
-    const Vec3& from = triangle.corner(k);
-    const Vec3 out = (triangle.corner((k + 1) % 3) - from).cross(triangle.normal()).normalized();
-    if (out.dot(a.support(-out) - from) - a.rounding() > reach) {
+    const Vec3 out = triangle.outward_of(k).normalized();
+    if (out.dot(a.support(-out) - triangle.corners[k]) - a.rounding() > reach) {
       return true;
     }
   }
   return false;
 }
 
+/// A sphere or capsule, by its centre or axis. Where that comes within a touch of the triangle it
+/// has no direction from it, and the face counts.
+void meet_segment(const Convex& a, const PlacedMesh& mesh, int t, const TriangleCore& triangle,
+                  double reach, TriangleMeeting& meeting, Separation& found) {
+  SegmentOnTriangle nearest;
+  if (!nearest_points(*a.segment(), triangle.triangle(), reach + a.rounding(), nearest)) {
+    return;
+  }
+  const double cores = nearest.between.norm();
+  if (nearest.edge < 0 || cores <= kTouch * std::min(a.size(), triangle.size())) {
+    meeting.distance = meeting.face.separation;
+    return;
+  }
+  meeting.distance = cores - a.rounding();
+  if (meeting.distance > reach) {
+    return;
+  }
+  const Meeting at{nearest.between / cores, piece_at(*a.segment(), nearest.s),
+                   triangle.piece_at(nearest.edge, nearest.t)};
+  meeting.counts = belongs(mesh, t, at.b, at.normal);
+  if (meeting.counts) {
+    found.distance = meeting.distance;
+    found.meetings.assign(1, at);
+    found.face.reset();
+    if (is_as_far(a, triangle, meeting.distance, meeting.face.separation)) {
+      found.face = meeting.face;
+    }
+  }
+}
+
 /// @param reach what is further apart than this may be said to be at +infinity
-/// @param found where not at +infinity and not by the face alone: what separate() says
+/// @param found where a normal counts: what separate() would say
 TriangleMeeting meet(const Convex& a, const PlacedMesh& mesh, int t, const TriangleCore& triangle,
                      double reach, Separation& found) {
   TriangleMeeting meeting;
-  meeting.face = least_deep_face(a, triangle);
-  if (meeting.face.separation > reach || is_beside(a, triangle, reach)) {
+  meeting.face = least_deep_face(a, triangle.triangle());
+  if (meeting.face.separation > reach) {
     return meeting;
   }
-  // The difference of a point or segment and a triangle may have no volume: only where they are
-  // apart is there a direction to find.
-  const double touch = kTouch * std::min(a.size(), triangle.size());
-  if (a.rounding() > 0.0) {
-    const double cores = gjk(a, triangle, 1e-8, 0.0).lower;
-    if (cores <= touch) {
-      meeting.distance = meeting.face.separation;
-      return meeting;
-    }
-    if (cores * (1.0 - 1e-8) - a.rounding() > reach) {
-      return meeting;
-    }
+  if (a.segment() != nullptr) {
+    meet_segment(a, mesh, t, triangle, reach, meeting, found);
+    return meeting;
+  }
+  if (is_beside(a, triangle.triangle(), reach)) {
+    return meeting;
+  }
+  if (meeting.face.separation > 0.0 &&
+      triangle.triangle().is_under(a.support(-meeting.face.normal))) {
+    meeting.distance = meeting.face.separation;  // between A's nearest point and its foot
+    return meeting;
   }
   separate(a, triangle, found);
   meeting.distance = found.distance;
@@ -206,8 +254,22 @@ Bounds widened(const Bounds& near, double by, const MeshData& mesh) {
   return {near.low - reach, near.high + reach};
 }
 
-std::vector<int> triangles_near(const Bounds& near, const MeshData& mesh) {
-  std::vector<int> result;
+/// What a query works on: kept from query to query of a thread.
+struct MeshMemory {
+  std::vector<int> near;
+  Separation apart;
+  std::vector<Contact> deepest;
+};
+
+MeshMemory& memory() {
+  thread_local MeshMemory of_this_thread;
+  return of_this_thread;
+}
+
+/// In ascending order.
+const std::vector<int>& triangles_near(const Bounds& near, const MeshData& mesh) {
+  std::vector<int>& result = memory().near;
+  result.clear();
   mesh.tree.visit_overlaps(near, [&](int t) { result.push_back(t); });
   std::sort(result.begin(), result.end());
   return result;
@@ -244,9 +306,9 @@ void number_features(const MeshData& mesh, int t, std::size_t first, bool keep_a
 }
 
 /// Of contacts with one id the one with the least gap stays, in the place of the first.
-void merge(std::vector<Contact>& contacts) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
+/// @param kept so many at the start have different ids
+void merge(std::size_t kept, std::vector<Contact>& contacts) {
+  for (std::size_t i = kept; i < contacts.size(); ++i) {
     std::size_t same = 0;
     while (same < kept && contacts[same].feature_id != contacts[i].feature_id) {
       ++same;
@@ -263,12 +325,15 @@ void merge(std::vector<Contact>& contacts) {
 /// The contacts with one triangle, whatever their normals.
 void add_last_word(const Convex& a, const TriangleCore& triangle, double margin,
                    std::vector<Contact>& contacts) {
+  SegmentOnTriangle nearest;
   const double touch = kTouch * std::min(a.size(), triangle.size());
-  if (a.rounding() == 0.0 || gjk(a, triangle, 1e-8, 0.0).lower > touch) {
+  if (a.segment() == nullptr ||
+      (nearest_points(*a.segment(), triangle.triangle(), kInfinity, nearest) &&
+       nearest.between.norm() > touch)) {
     find_contacts(a, triangle, margin, contacts);
     return;
   }
-  const FacingFace face = least_deep_face(a, triangle);
+  const FacingFace face = least_deep_face(a, triangle.triangle());
   const Vec3 on_a = a.support(-face.normal) - a.rounding() * face.normal;
   Contact contact = narrow::make_contact(on_a, on_a - face.separation * face.normal, face.normal,
                                          face.separation, kFront, NormalOwner::kFaceB);
@@ -280,14 +345,15 @@ void add_last_word(const Convex& a, const TriangleCore& triangle, double margin,
 }  // namespace
 
 double mesh_distance(const Convex& a, const Bounds& near, const PlacedMesh& b) {
-  Separation found;
+  Separation& found = memory().apart;
   const double least = b.data.tree.least(widened(near, 0.0, b.data), kInfinity, [&](int t) {
     return meet(a, b, t, core_of(b, t), kInfinity, found).distance;
   });
   if (least > 0.0) {
     return least;
   }
-  std::vector<Contact> contacts;
+  std::vector<Contact>& contacts = memory().deepest;
+  contacts.clear();
   find_mesh_contacts(a, near, b, 0.0, contacts);
   double deepest = kInfinity;
   for (const Contact& contact : contacts) {
@@ -297,10 +363,9 @@ double mesh_distance(const Convex& a, const Bounds& near, const PlacedMesh& b) {
 }
 
 bool mesh_test(const Convex& a, const Bounds& near, const PlacedMesh& b) {
-  const std::vector<int> triangles = triangles_near(widened(near, 0.0, b.data), b.data);
-  Separation found;
+  const std::vector<int>& triangles = triangles_near(widened(near, 0.0, b.data), b.data);
   return std::any_of(triangles.begin(), triangles.end(), [&](int t) {
-    return meet(a, b, t, core_of(b, t), 0.0, found).distance <= 0.0;
+    return meet(a, b, t, core_of(b, t), 0.0, memory().apart).distance <= 0.0;
   });
 }
 
@@ -308,8 +373,7 @@ void find_mesh_contacts(const Convex& a, const Bounds& near, const PlacedMesh& b
                         std::vector<Contact>& contacts) {
   double least = kInfinity;
   int nearest = -1;
-  std::vector<Contact> of_one;
-  Separation apart;
+  Separation& apart = memory().apart;
   for (const int t : triangles_near(widened(near, margin, b.data), b.data)) {
     const TriangleCore triangle = core_of(b, t);
     const TriangleMeeting meeting = meet(a, b, t, triangle, margin, apart);
@@ -317,16 +381,18 @@ void find_mesh_contacts(const Convex& a, const Bounds& near, const PlacedMesh& b
       least = meeting.distance;
       nearest = t;
     }
-    of_one.clear();
-    if (meeting.counts && meeting.distance <= margin) {
-      find_contacts(a, triangle, apart, margin, of_one);
-    } else if (!meeting.counts && meeting.distance <= margin) {
-      find_contacts_on_face(a, triangle, meeting.face, margin, of_one);
+    if (meeting.distance > margin) {
+      continue;
     }
-    number_features(b.data, t, 0, false, of_one);
-    contacts.insert(contacts.end(), of_one.begin(), of_one.end());
+    const std::size_t before = contacts.size();
+    if (meeting.counts) {
+      find_contacts(a, triangle, apart, margin, contacts);
+    } else {
+      find_contacts_on_face(a, triangle, meeting.face, margin, contacts);
+    }
+    number_features(b.data, t, before, false, contacts);
+    merge(before, contacts);
   }
-  merge(contacts);
   // Where no triangle's normal counts and A is over none, the nearest triangle has the last word.
   if (contacts.empty() && least <= margin) {
     add_last_word(a, core_of(b, nearest), margin, contacts);

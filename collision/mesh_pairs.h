@@ -12,7 +12,11 @@ namespace signorini::collision {
 /// A mesh in the frame of a query.
 struct PlacedMesh {
   const MeshData& data;
-  Pose pose;
+  Vec3 position;
+  Mat3 axes;
+
+  PlacedMesh(const TriangleMesh& mesh, const Pose& pose)
+      : data(*mesh.data), position(pose.position), axes(pose.orientation.toRotationMatrix()) {}
 };
 
 /// A convex shape A against a mesh B. `near`: bounds of A in the mesh's frame.
@@ -28,8 +32,10 @@ struct PlacedMesh {
 /// and concave edges never pass. Where a triangle's own normal does not count, A meets the triangle
 /// along its plane's normal, on the side on which A is least deep, and only where A is over the
 /// triangle. A sphere or capsule whose core comes within 1e-4 of its size of a triangle does too.
-/// Inner edges and vertices of flat pieces carry no contacts, and what two triangles of a piece
-/// both report is reported once.
+/// Where A's nearest point is above the triangle its plane says all; spheres and capsules meet
+/// edges and vertices by the nearest points of their segments (segments.h). Inner edges and
+/// vertices of flat pieces carry no contacts, and what two triangles of a piece both report is
+/// reported once.
 ///
 /// The distance is the least over the triangles; overlapping: the least gap of the contact set,
 /// which is the deepest translation along the normals that count (of each triangle alone, not of
@@ -50,17 +56,17 @@ concept HasCore = requires(const S& shape, const Pose& pose) {
 template <HasCore A>
 [[nodiscard]] double distance(const A& a, const Pose& pose_a, const TriangleMesh& b,
                               const Pose& pose_b) {
-  return mesh_distance(core_of(a, pose_a), bounds(a, pose_b.inverse() * pose_a), {*b.data, pose_b});
+  return mesh_distance(core_of(a, pose_a), bounds(a, pose_b.inverse() * pose_a), {b, pose_b});
 }
 template <HasCore A>
 [[nodiscard]] bool test(const A& a, const Pose& pose_a, const TriangleMesh& b, const Pose& pose_b) {
-  return mesh_test(core_of(a, pose_a), bounds(a, pose_b.inverse() * pose_a), {*b.data, pose_b});
+  return mesh_test(core_of(a, pose_a), bounds(a, pose_b.inverse() * pose_a), {b, pose_b});
 }
 template <HasCore A>
 void find(const A& a, const Pose& pose_a, const TriangleMesh& b, const Pose& pose_b, double margin,
           std::vector<Contact>& contacts) {
-  find_mesh_contacts(core_of(a, pose_a), bounds(a, pose_b.inverse() * pose_a), {*b.data, pose_b},
-                     margin, contacts);
+  find_mesh_contacts(core_of(a, pose_a), bounds(a, pose_b.inverse() * pose_a), {b, pose_b}, margin,
+                     contacts);
 }
 
 /// Two immovable shapes: -infinity where their bounds meet, no contacts.

@@ -237,16 +237,15 @@ EdgeAxis best_edges(const Polyhedron& a, const Polyhedron& b, const Relative& re
 }
 
 /// Of the faces within the preference tolerance of the distance the one that is preferred.
-std::optional<FacingFace> preferred_face(const Polyhedron& a, const Polyhedron& b, double distance,
-                                         double tolerance, const Memory& found) {
+std::optional<FacingFace> preferred_face(const Convex& shape_a, const Convex& shape_b,
+                                         double distance, const Memory& found) {
   std::optional<FacingFace> best;
   double best_area = 0.0;
-  const auto look = [&](const Polyhedron& p, const FaceCandidate& candidate, bool of_a) {
-    const double rounding = 64.0 * kEpsilon * (a.size + b.size + std::abs(distance));
-    const double less = std::max(0.0, distance - candidate.separation - rounding);
-    if (less > tolerance || less * (distance + candidate.separation) > tolerance * tolerance) {
+  const auto look = [&](const Convex& shape, const FaceCandidate& candidate, bool of_a) {
+    if (!is_as_far(shape_a, shape_b, distance, candidate.separation)) {
       return;
     }
+    const Polyhedron& p = *shape.polyhedron();
     const Vec3 outward = p.axes * p.shape->normals[candidate.face];
     const FacingFace face{of_a, of_a ? Vec3(-outward) : outward, candidate.separation};
     const double area = p.areas[candidate.face];
@@ -256,10 +255,10 @@ std::optional<FacingFace> preferred_face(const Polyhedron& a, const Polyhedron& 
     }
   };
   for (const FaceCandidate& candidate : found.faces_a.near) {
-    look(a, candidate, true);
+    look(shape_a, candidate, true);
   }
   for (const FaceCandidate& candidate : found.faces_b.near) {
-    look(b, candidate, false);
+    look(shape_b, candidate, false);
   }
   return best;
 }
@@ -285,7 +284,7 @@ void separate_polyhedra(const Convex& shape_a, const Convex& shape_b,
         (of_a.separation >= by_faces - rounding && is_over_face(a, of_a.face, of_a.nearest)) ||
         (of_b.separation >= by_faces - rounding && is_over_face(b, of_b.face, of_b.nearest));
     if (result.is_distance) {
-      result.face = preferred_face(a, b, by_faces, tolerance, found);
+      result.face = preferred_face(shape_a, shape_b, by_faces, found);
     }
     return;
   }
@@ -308,7 +307,7 @@ void separate_polyhedra(const Convex& shape_a, const Convex& shape_b,
                      found.edges_b);
   const EdgeAxis edges = best_edges(a, b, relative, by_faces, found.edges_a, found.edges_b);
   result.separation = edges.separation;
-  result.face = preferred_face(a, b, edges.separation, tolerance, found);
+  result.face = preferred_face(shape_a, shape_b, edges.separation, found);
   if (!result.face) {
     result.edges = {a.axes * edges.normal, a.edge(edges.a), b.edge(edges.b)};
   }

@@ -219,16 +219,31 @@ class Search {
     try_pieces(Vec3(candidates_[highest_].normal), kAngles[1]);
   }
 
+  /// Looks along the directions of all pieces within an angle of the best one, and goes on from one
+  /// that is better by more than a tie.
+  void refine_within(double angle) {
+    double best = distance() + tie();
+    std::optional<Vec3> better;
+    for_all_normals(normal(), angle, [&](const Vec3& n, const Stratum&, const Stratum&) {
+      const double s = separation_along(a_, b_, n);
+      if (s > best) {
+        best = s;
+        better = n;
+      }
+    });
+    if (better) {
+      refine(*better);
+    }
+  }
+
   /// Has a pair of pieces come at least as far as the directions it started from?
   [[nodiscard]] bool is_refined() const { return candidates_[highest_].rank >= 0; }
 
   void write_best(Separation& result) {
     const double largest = candidates_[highest_].distance;
-    const double tie = kTie * std::min(a_.size(), b_.size()) +
-                       16.0 * std::numeric_limits<double>::epsilon() * (a_.size() + b_.size());
     tied_.clear();
     for (const Candidate& candidate : candidates_) {
-      if (candidate.distance >= largest - tie) {
+      if (candidate.distance >= largest - tie()) {
         // By insertion, which is stable and needs no memory.
         const auto place = std::upper_bound(
             tied_.begin(), tied_.end(), &candidate, [](const Candidate* p, const Candidate* q) {
@@ -246,6 +261,7 @@ class Search {
   }
 
   [[nodiscard]] double distance() const { return candidates_[highest_].distance; }
+  [[nodiscard]] Vec3 normal() const { return candidates_[highest_].normal; }
 
  private:
   void offer(const Vec3& n, int rank, const Stratum& piece_a, const Stratum& piece_b) {
@@ -260,7 +276,14 @@ class Search {
     candidates_.push_back({s, n, rank, piece_a, piece_b});
   }
 
-  void try_pieces(const Vec3& near, double angle) {
+  [[nodiscard]] double tie() const {
+    return kTie * std::min(a_.size(), b_.size()) +
+           16.0 * std::numeric_limits<double>::epsilon() * (a_.size() + b_.size());
+  }
+
+  /// visit(n, piece_a, piece_b) for the normals of every pair of pieces within an angle of `near`.
+  template <class Visit>
+  void for_all_normals(const Vec3& near, double angle, Visit&& visit) {
     pieces_a_.clear();
     pieces_b_.clear();
     a_.add_strata(-near, angle, pieces_a_);
@@ -269,28 +292,26 @@ class Search {
       for (const Stratum& piece_b : pieces_b_) {
         const Normals normals = normals_of(piece_a, piece_b, near);
         for (int k = 0; k < normals.count; ++k) {
-          offer(normals.directions[k], rank_of(piece_a, piece_b), piece_a, piece_b);
+          visit(normals.directions[k], piece_a, piece_b);
         }
       }
     }
-    offer(near, -1, *furthest_free(pieces_a_, -near), *furthest_free(pieces_b_, near));
   }
 
-  [[nodiscard]] bool is_as_good(double separation) const {
-    const double largest = candidates_[highest_].distance;
-    const double tolerance = preference_tolerance(a_, b_);
-    const double rounding =
-        64.0 * std::numeric_limits<double>::epsilon() * (a_.size() + b_.size() + std::abs(largest));
-    const double less = std::max(0.0, largest - separation - rounding);
-    const double sum = largest + separation + 2.0 * (a_.rounding() + b_.rounding());
-    return less <= tolerance && less * sum <= tolerance * tolerance;
+  void try_pieces(const Vec3& near, double angle) {
+    for_all_normals(near, angle,
+                    [&](const Vec3& n, const Stratum& piece_a, const Stratum& piece_b) {
+                      offer(n, rank_of(piece_a, piece_b), piece_a, piece_b);
+                    });
+    offer(near, -1, *furthest_free(pieces_a_, -near), *furthest_free(pieces_b_, near));
   }
 
   [[nodiscard]] std::optional<FacingFace> face() const {
     std::optional<FacingFace> best;
     double best_area = 0.0;
     for (const Candidate& candidate : candidates_) {
-      if (candidate.rank < 3 || !is_as_good(candidate.distance)) {
+      if (candidate.rank < 3 ||
+          !is_as_far(a_, b_, candidates_[highest_].distance, candidate.distance)) {
         continue;
       }
       for (const Stratum* piece : {&candidate.a, &candidate.b}) {
@@ -320,6 +341,19 @@ SearchMemory& memory() {
   return of_this_thread;
 }
 
+/// Cores that all but touch, as on an edge, are nearly parted along many directions. Where one is
+/// much larger the polytope's rounding hides which is the best one, and all pieces of surface about
+/// the one it ended at are tried.
+void refine_touch(Search& search, const Convex& a, const Convex& b) {
+  constexpr double kMuchLarger = 30.0;
+  constexpr double kAllAbout = 1.6;  // radians
+  const double size = std::min(a.size(), b.size());
+  const double depth = -(search.distance() + a.rounding() + b.rounding());
+  if (depth <= kTouch * size && std::max(a.size(), b.size()) > kMuchLarger * size) {
+    search.refine_within(kAllAbout);
+  }
+}
+
 /// Everything that separate() tries.
 void run(Search& search, const Convex& a, const Convex& b, std::vector<Axis>& axes) {
   const double size = std::min(a.size(), b.size());
@@ -343,6 +377,7 @@ void run(Search& search, const Convex& a, const Convex& b, std::vector<Axis>& ax
         search.refine(axis.normal);
       }
     }
+    refine_touch(search, a, b);
   }
 }
 
@@ -361,6 +396,15 @@ bool prefers(const FacingFace& p, double area_p, const FacingFace& q, double are
 
 double preference_tolerance(const Convex& a, const Convex& b) {
   return 1e-6 * std::min(a.size(), b.size());
+}
+
+bool is_as_far(const Convex& a, const Convex& b, double largest, double separation) {
+  const double tolerance = preference_tolerance(a, b);
+  const double rounding =
+      64.0 * std::numeric_limits<double>::epsilon() * (a.size() + b.size() + std::abs(largest));
+  const double less = std::max(0.0, largest - separation - rounding);
+  const double sum = largest + separation + 2.0 * (a.rounding() + b.rounding());
+  return less <= tolerance && less * sum <= tolerance * tolerance;
 }
 
 double separation_along(const Convex& a, const Convex& b, const Vec3& n) {

@@ -3,6 +3,7 @@
 #include <signorini/collision/pair_query.h>
 
 #include "random_pairs.h"
+#include "random_throws.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +15,9 @@ namespace signorini::collision {
 namespace {
 
 using testing::Random;
+using testing::random_throw;
 using testing::ShapeKind;
+using testing::Throw;
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(NDEBUG)
 constexpr int kThrows = 200;
@@ -294,43 +297,15 @@ TEST(ContactTime, AgreesWithDenseSamplingOnRandomThrows) {
   EXPECT_GT(hits, kThrows / 4);
 }
 
-struct Throw {
-  testing::PlacedPair pair;
-  ConstantVelocityMotion a;
-  ConstantVelocityMotion b;
-};
-
-/// Two shapes of which one is none of sphere, box and half-space; `apart`: their distance at the
-/// start over the smaller size.
-Throw random_throw(Random& random, int number, double apart) {
-  constexpr ShapeKind kNew[] = {ShapeKind::kCapsule, ShapeKind::kCylinder, ShapeKind::kCone,
-                                ShapeKind::kEllipsoid, ShapeKind::kHull};
-  const auto other = static_cast<ShapeKind>(number / 5 % 8);
-  testing::PlacedPair pair =
-      testing::random_pair(random, kNew[number % 5], other, testing::Placement::kAnywhere);
-  std::vector<Contact> contacts;
-  find_intersection(pair.a, pair.pose_a, pair.b, pair.pose_b, 1e9, contacts);
-  const Contact& nearest =
-      *std::min_element(contacts.begin(), contacts.end(),
-                        [](const Contact& p, const Contact& q) { return p.gap < q.gap; });
-  const double size = pair.size;
-  pair.pose_a.position += (apart * size - nearest.gap) * nearest.normal;
-  const auto vector = [&](double most) {
-    return Vec3(testing::uniform(random, 0.0, most) * testing::random_direction(random));
-  };
-  const bool on_plane = other == ShapeKind::kHalfSpace;
-  const Vec3 velocity = vector(3.0 * size) - 2.0 * size * nearest.normal;
-  return {pair,
-          {pair.pose_a, velocity, vector(10.0)},
-          {pair.pose_b, on_plane ? Vec3(Vec3::Zero()) : vector(size),
-           on_plane ? Vec3(Vec3::Zero()) : vector(10.0)}};
-}
-
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(NDEBUG)
 constexpr int kNewThrows = 40;
 #else
 constexpr int kNewThrows = 100;
 #endif
+
+/// None of sphere, box and half-space.
+constexpr ShapeKind kNew[] = {ShapeKind::kCapsule, ShapeKind::kCylinder, ShapeKind::kCone,
+                              ShapeKind::kEllipsoid, ShapeKind::kHull};
 
 // The gap is sampled up to the time, and the time compared with a bisection of the gap.
 TEST(ContactTime, OfTheOtherShapesAgreesWithBisectionOnRandomThrows) {
@@ -338,7 +313,8 @@ TEST(ContactTime, OfTheOtherShapesAgreesWithBisectionOnRandomThrows) {
   int hits = 0;
   double worst = 0.0;
   for (int k = 0; k < kNewThrows; ++k) {
-    const Throw thrown = random_throw(random, k, testing::uniform(random, 0.01, 2.0));
+    const Throw thrown = random_throw(random, kNew[k % 5], static_cast<ShapeKind>(k / 5 % 8),
+                                      testing::uniform(random, 0.01, 2.0));
     const auto& [pair, a, b] = thrown;
     const auto gap = [&](double t) { return gap_at(pair.a, a, pair.b, b, t); };
     const auto time = contact_time(pair.a, a, pair.b, b, 1.0);
@@ -377,7 +353,8 @@ TEST(ContactTime, OfTheOtherShapesAgreesWithBisectionOnRandomThrows) {
 TEST(ContactTime, FromAnOverlapNothingBecomesDeeperUnnoticed) {
   Random random(7);
   for (int k = 0; k < kNewThrows / 4; ++k) {
-    const Throw thrown = random_throw(random, k, -testing::uniform(random, 1e-3, 0.5));
+    const Throw thrown = random_throw(random, kNew[k % 5], static_cast<ShapeKind>(k / 5 % 8),
+                                      -testing::uniform(random, 1e-3, 0.5));
     const auto& [pair, a, b] = thrown;
     const double start = gap_at(pair.a, a, pair.b, b, 0.0);
     const double until = contact_time(pair.a, a, pair.b, b, 1.0).value_or(1.0);

@@ -155,6 +155,26 @@ TEST(ConvexPair, HoldsEveryPropertyWhereOneWasBroken) {
   }
 }
 
+// A rim that touches an edge of a box a thousand times as large: the polytope ended at the face
+// beside the edge, 3 of what is allowed away, in a third of the frames.
+TEST(ConvexPair, TouchesAnEdgeOfAMuchLargerShapeInEveryFrame) {
+  const Box box{{44.079651287885667, 10.776018474258311, 226.26936004520343}};
+  const Pose of_box =
+      at(-161.62463570175692, 59.941702658580802, -117.55864774735355, 0.49999999999997713,
+         0.4999999999999214, 0.50000000000014921, 0.49999999999995232);
+  const Cone cone{0.24113651572066683, 0.099022035687063026};
+  const Pose of_cone =
+      at(-191.41085026530936, 15.620923467682692, -128.43370921552963, 7.9256176685457434e-06,
+         -0.99999999668455253, -4.3442323824088829e-05, 6.8416695377993702e-05);
+  testing::Random random(1);
+  const double allowed = 1e-8 * bounding_radius(cone, Pose{});
+  for (int k = 0; k < 100; ++k) {
+    Pose frame{0.25 * testing::random_direction(random), testing::random_orientation(random)};
+    frame.position -= frame.orientation * of_cone.position;
+    EXPECT_LE(std::abs(signed_distance(box, frame * of_box, cone, frame * of_cone)), allowed) << k;
+  }
+}
+
 // Acute corners: points of the clipped face lie on it, not beside it by the slack over a sine.
 TEST(ConvexPair, ClippedPointsAtAcuteCornersLieOnTheirShapes) {
   testing::Random random(2);
