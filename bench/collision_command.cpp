@@ -4,6 +4,7 @@
 
 #include "bench/broad_phase_study.h"
 #include "bench/contact_study.h"
+#include "bench/contact_time_study.h"
 #include "bench/narrow_phase_study.h"
 
 #include <CLI/CLI.hpp>
@@ -31,6 +32,7 @@ void write_csv(const std::string& folder, const std::string& name, const std::st
 
 struct CollisionCommand::Options {
   ContactStudyOptions contacts;
+  ContactTimeOptions contact_times;
   BroadPhaseOptions broad_phase;
   NarrowPhaseOptions narrow_phase;
   std::string out;
@@ -47,6 +49,15 @@ CollisionCommand::CollisionCommand(CLI::App& app) : options_(std::make_unique<Op
       ->capture_default_str();
   contacts_->add_option("--pair", o.contacts.pair, "One pair alone, such as sphere-box");
   contacts_->add_option("--seed", o.contacts.seed, "Of the random numbers")->capture_default_str();
+  contact_times_ = app.add_subcommand(
+      "contact-times",
+      "Contact times of random throws of every pair of shapes, against samples and a bisection of "
+      "the gap");
+  contact_times_->add_option("--throws", o.contact_times.throws, "Of all pairs together")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  contact_times_->add_option("--seed", o.contact_times.seed, "Of the random numbers")
+      ->capture_default_str();
   broad_phase_ = app.add_subcommand(
       "broad-phase", "Moving boxes: our broad phase beside Bullet's, FCL's and Boost's");
   broad_phase_->add_option("--bodies", o.broad_phase.bodies, "How many boxes")
@@ -65,7 +76,7 @@ CollisionCommand::CollisionCommand(CLI::App& app) : options_(std::make_unique<Op
       ->add_option("--repeats", o.narrow_phase.repeats, "Of all poses; the least time counts")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  for (CLI::App* study : {contacts_, broad_phase_, narrow_phase_}) {
+  for (CLI::App* study : {contacts_, contact_times_, broad_phase_, narrow_phase_}) {
     study->add_option("--out", o.out, "Folder for the CSV, made if absent (default: print only)");
   }
 }
@@ -73,7 +84,8 @@ CollisionCommand::CollisionCommand(CLI::App& app) : options_(std::make_unique<Op
 CollisionCommand::~CollisionCommand() = default;
 
 bool CollisionCommand::is_asked() const {
-  return contacts_->parsed() || broad_phase_->parsed() || narrow_phase_->parsed();
+  return contacts_->parsed() || contact_times_->parsed() || broad_phase_->parsed() ||
+         narrow_phase_->parsed();
 }
 
 int CollisionCommand::run() const {
@@ -83,6 +95,11 @@ int CollisionCommand::run() const {
   if (contacts_->parsed()) {
     const ContactStudyReport report = run_contact_study(options_->contacts, std::cout);
     write_csv(options_->out, "contacts", report.to_csv());
+    return report.passed() ? kClaimsHold : kWrongClaim;
+  }
+  if (contact_times_->parsed()) {
+    const ContactTimeReport report = run_contact_time_study(options_->contact_times, std::cout);
+    write_csv(options_->out, "contact-times", report.to_csv());
     return report.passed() ? kClaimsHold : kWrongClaim;
   }
   if (narrow_phase_->parsed()) {

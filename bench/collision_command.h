@@ -5,8 +5,8 @@
 
 namespace signorini::bench {
 
-/// The studies of collision detection: `signorini-bench contacts`, `broad-phase` and
-/// `narrow-phase`.
+/// The studies of collision detection: `signorini-bench contacts`, `contact-times`, `broad-phase`
+/// and `narrow-phase`.
 class CollisionCommand {
  public:
   explicit CollisionCommand(CLI::App& app);
@@ -20,6 +20,7 @@ class CollisionCommand {
   struct Options;
   std::unique_ptr<Options> options_;
   CLI::App* contacts_;
+  CLI::App* contact_times_;
   CLI::App* broad_phase_;
   CLI::App* narrow_phase_;
 };

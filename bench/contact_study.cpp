@@ -1,6 +1,6 @@
 #include "bench/contact_study.h"
 
-#include <signorini/collision/pair_query.h>
+#include "bench/shape_kinds.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -14,41 +14,29 @@ namespace {
 using collision::testing::PlacedPair;
 using collision::testing::Placement;
 using collision::testing::Random;
-using collision::testing::ShapeKind;
 
-struct Kind {
-  ShapeKind kind;
-  const char* name;
-};
-constexpr Kind kKinds[] = {
-    {ShapeKind::kSphere, "sphere"},   {ShapeKind::kBox, "box"},
-    {ShapeKind::kCapsule, "capsule"}, {ShapeKind::kCylinder, "cylinder"},
-    {ShapeKind::kCone, "cone"},       {ShapeKind::kEllipsoid, "ellipsoid"},
-    {ShapeKind::kHull, "hull"},       {ShapeKind::kHalfSpace, "half-space"},
-};
-
-PlacedPair pose_of(Random& random, const Kind& a, const Kind& b, long number) {
+PlacedPair pose_of(Random& random, const KindPair& kinds, long number) {
   constexpr Placement kPlacements[] = {Placement::kAnywhere, Placement::kAligned,
                                        Placement::kNearlyAligned};
-  return collision::testing::random_pair(random, a.kind, b.kind, kPlacements[number % 3]);
+  return collision::testing::random_pair(random, kinds.a.kind, kinds.b.kind,
+                                         kPlacements[number % 3]);
 }
 
-ContactStudyRow run_pair(const Kind& a, const Kind& b, const ContactStudyOptions& options) {
+ContactStudyRow run_pair(const KindPair& kinds, const ContactStudyOptions& options) {
   ContactStudyRow row;
-  row.pair = fmt::format("{}-{}", a.name, b.name);
+  row.pair = kinds.name();
   Random random(options.seed);
   for (long k = 0; k < options.poses; ++k) {
-    PlacedPair pair = pose_of(random, a, b, k);
+    PlacedPair pair = pose_of(random, kinds, k);
     if (k % 2 == 1) {
       pair = kissing(pair, random);
       ++row.kissing;
     }
     const double margin =
         k % 4 < 2 ? 0.0 : pair.size * collision::testing::log_uniform(random, -6.0, 0.0);
-    const PairVerdict verdict = judge_pair(pair, margin, random);
+    const auto [verdict, distance] = judge_pair(pair, margin, random);
     ++row.poses;
-    row.overlapping +=
-        collision::signed_distance(pair.a, pair.pose_a, pair.b, pair.pose_b) <= 0.0 ? 1 : 0;
+    row.overlapping += distance <= 0.0 ? 1 : 0;
     for (int p = 0; p < kPairProperties; ++p) {
       row.worst[p] = std::max(row.worst[p], verdict[p]);
       if (verdict[p] > 1.0) {
@@ -111,15 +99,10 @@ ContactStudyReport run_contact_study(const ContactStudyOptions& options, std::os
   }
   out << fmt::format("{:>8}\n", "worst");
   std::string known;
-  for (std::size_t i = 0; i < std::size(kKinds); ++i) {
-    for (std::size_t j = i; j < std::size(kKinds); ++j) {
-      const std::string name = fmt::format("{}-{}", kKinds[i].name, kKinds[j].name);
-      known += (known.empty() ? "" : ", ") + name;
-      const bool both_planes = kKinds[i].kind == ShapeKind::kHalfSpace;
-      if (both_planes || (!options.pair.empty() && options.pair != name)) {
-        continue;
-      }
-      report.rows.push_back(run_pair(kKinds[i], kKinds[j], options));
+  for (const KindPair& kinds : shape_pairs()) {
+    known += (known.empty() ? "" : ", ") + kinds.name();
+    if (options.pair.empty() || options.pair == kinds.name()) {
+      report.rows.push_back(run_pair(kinds, options));
       print(report.rows.back(), out);
     }
   }

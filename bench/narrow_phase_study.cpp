@@ -4,6 +4,7 @@
 #include <signorini/collision/hull.h>
 #include <signorini/collision/mesh.h>
 #include <signorini/collision/pair_query.h>
+#include <signorini/collision/segments.h>
 
 #include "bench/narrow_phase_peer.h"
 #include "bench/thread_time.h"
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <iterator>
 #include <limits>
 #include <ostream>
 
@@ -152,14 +154,43 @@ bool is_on(const Shape& shape, const Pose& pose, const Vec3& point) {
          kTolerance;
 }
 
+/// Is N, at a point of a mesh, a normal of its surface: of a triangle there, or one along which no
+/// triangle there reaches further than the point? (At an edge inside a flat piece only the piece's
+/// normal is.)
+bool is_normal_of(const collision::MeshData& mesh, const Vec3& point, const Vec3& N) {
+  constexpr double kAngle = 1e-2;  // radians
+  bool is_of_a_triangle = false;
+  bool is_furthest = true;
+  for (const collision::MeshData::Triangle& numbers : mesh.triangles) {
+    collision::Triangle triangle;
+    std::transform(numbers.vertices.begin(), numbers.vertices.end(), triangle.corners.begin(),
+                   [&](int v) { return mesh.vertices[v]; });
+    triangle.normal = numbers.normal;
+    collision::SegmentOnTriangle nearest;
+    if (!collision::nearest_points({point}, triangle, kTolerance, nearest) ||
+        nearest.between.norm() > kTolerance) {
+      continue;
+    }
+    is_of_a_triangle = is_of_a_triangle || N.cross(triangle.normal).norm() <= kAngle;
+    for (const Vec3& corner : triangle.corners) {
+      const Vec3 to = corner - point;
+      is_furthest = is_furthest && N.dot(to) <= kAngle * to.norm() + kTolerance;
+    }
+  }
+  return is_of_a_triangle || is_furthest;
+}
+
 /// The normal parts the shapes as well as the best does; from a mesh, which has no one best normal:
-/// by no more than the deepest of its triangles needs.
+/// it is one of its surface and asks for no more than the deepest of its triangles does.
 bool has_good_normal(const Pair& pair, const PosePair& poses, const Contact& contact,
                      double distance) {
   const Vec3& N = contact.normal;
   if (is_mesh(pair.b)) {
     const double gap = N.dot(contact.point_a - contact.point_b);
-    return gap >= distance - kTolerance &&
+    const auto& mesh = *std::get<collision::TriangleMesh>(pair.b).data;
+    return is_normal_of(mesh, poses.b.inverse() * contact.point_b,
+                        poses.b.orientation.conjugate() * N) &&
+           gap >= distance - kTolerance &&
            (contact.point_a - contact.point_b - gap * N).norm() <= kTolerance;
   }
   const double best = -support(pair.a, poses.a, -N) - support(pair.b, poses.b, N);
@@ -176,7 +207,7 @@ bool is_valid(const Pair& pair, const PosePair& poses, const Contact& contact, d
 
 NarrowPhaseRow measure(NarrowPhasePeer& peer, const Pair& pair, const std::vector<PosePair>& poses,
                        int repeats) {
-  NarrowPhaseRow row{pair.name, peer.name(), 0.0, 0.0, 0.0, 0.0};
+  NarrowPhaseRow row{pair.name, peer.name(), 0.0, 0.0, 0.0, 0.0, 0.0};
   const auto count = static_cast<double>(poses.size());
   std::vector<Contact> contacts;
   for (const PosePair& pose : poses) {
@@ -184,10 +215,13 @@ NarrowPhaseRow measure(NarrowPhasePeer& peer, const Pair& pair, const std::vecto
     peer.read(contacts);
     const double d = collision::signed_distance(pair.a, pose.a, pair.b, pose.b);
     row.points += static_cast<double>(contacts.size()) / count;
-    for (const Contact& contact : contacts) {
-      row.valid += (is_valid(pair, pose, contact, d) ? 1.0 : 0.0) / count;
-    }
     constexpr int kAll = 1000;
+    std::vector<Contact> valid;
+    std::copy_if(contacts.begin(), contacts.end(), std::back_inserter(valid),
+                 [&](const Contact& contact) { return is_valid(pair, pose, contact, d); });
+    row.valid += static_cast<double>(valid.size()) / count;
+    (void)collision::reduce_contacts(valid, kAll);
+    row.corners += static_cast<double>(valid.size()) / count;
     row.area += collision::reduce_contacts(contacts, kAll).area_before / count;
   }
   double least = std::numeric_limits<double>::infinity();
@@ -205,10 +239,10 @@ NarrowPhaseRow measure(NarrowPhasePeer& peer, const Pair& pair, const std::vecto
 }  // namespace
 
 std::string NarrowPhaseReport::to_csv() const {
-  std::string csv = "pair,narrow phase,ns a query,points,valid,area\n";
+  std::string csv = "pair,narrow phase,ns a query,points,valid,corners,area\n";
   for (const NarrowPhaseRow& row : rows) {
-    csv += fmt::format("{},{},{:.1f},{:.3f},{:.3f},{:.5f}\n", row.pair, row.name, row.nanoseconds,
-                       row.points, row.valid, row.area);
+    csv += fmt::format("{},{},{:.1f},{:.3f},{:.3f},{:.3f},{:.5f}\n", row.pair, row.name,
+                       row.nanoseconds, row.points, row.valid, row.corners, row.area);
   }
   return csv;
 }
@@ -228,8 +262,8 @@ NarrowPhaseReport run_narrow_phase_study(const NarrowPhaseOptions& options, std:
       {"capsule-mesh", Capsule{0.2, 0.4}, ground(), lying},
   };
   NarrowPhaseReport report;
-  out << fmt::format("{:<14}{:<16}{:>10}{:>10}{:>10}{:>10}\n", "pair", "", "ns", "points", "valid",
-                     "area");
+  out << fmt::format("{:<14}{:<16}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "pair", "", "ns", "points",
+                     "valid", "corners", "area");
   for (const Pair& pair : pairs) {
     Random random(options.seed);
     std::vector<PosePair> poses;
@@ -248,8 +282,8 @@ NarrowPhaseReport run_narrow_phase_study(const NarrowPhaseOptions& options, std:
 #endif
     for (const auto& peer : peers) {
       const NarrowPhaseRow row = measure(*peer, pair, poses, options.repeats);
-      out << fmt::format("{:<14}{:<16}{:>10.0f}{:>10.2f}{:>10.2f}{:>10.4f}\n", row.pair, row.name,
-                         row.nanoseconds, row.points, row.valid, row.area);
+      out << fmt::format("{:<14}{:<16}{:>10.0f}{:>10.2f}{:>10.2f}{:>10.2f}{:>10.4f}\n", row.pair,
+                         row.name, row.nanoseconds, row.points, row.valid, row.corners, row.area);
       out.flush();
       report.rows.push_back(row);
     }

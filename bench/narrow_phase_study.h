@@ -20,6 +20,8 @@ struct NarrowPhaseRow {
   double nanoseconds = -1.0;  ///< a query
   double points = -1.0;       ///< a pose
   double valid = -1.0;        ///< of them valid, a pose
+  double corners = -1.0;      ///< of the valid ones what reduce_contacts() keeps, a pose: no point
+                              ///< between others (or beside them to 1e-6) counts
   double area = -1.0;         ///< of the patches' hulls (contact_reduction.h), m^2 a pose
 };
 

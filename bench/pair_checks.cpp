@@ -2,6 +2,8 @@
 
 #include <signorini/collision/pair_query.h>
 
+#include "bench/shape_kinds.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -35,7 +37,7 @@ double separation(const PlacedPair& pair, const Vec3& n) {
 
 /// How far a point lies outside a convex shape, by the directions given.
 double outside(const Shape& shape, const Pose& pose, const Vec3& point,
-               const std::vector<Vec3>& directions) {
+               const std::array<Vec3, 4>& directions) {
   const Pose near{Vec3::Zero(), pose.orientation};
   double most = 0.0;
   for (const Vec3& n : directions) {
@@ -47,21 +49,29 @@ double outside(const Shape& shape, const Pose& pose, const Vec3& point,
   return most;
 }
 
-std::vector<Vec3> directions_about(const Vec3& N, Random& random) {
-  std::vector<Vec3> result{N, -N};
-  for (int k = 0; k < 20; ++k) {
-    result.push_back(random_direction(random));
-    result.push_back((N + log_uniform(random, -8.0, 0.0) * random_direction(random)).normalized());
+/// N, its opposite, 20 at random and 20 about N.
+std::array<Vec3, 42> directions_about(const Vec3& N, Random& random) {
+  std::array<Vec3, 42> result;
+  result[0] = N;
+  result[1] = -N;
+  for (std::size_t k = 2; k < result.size(); k += 2) {
+    result[k] = random_direction(random);
+    result[k + 1] = (N + log_uniform(random, -8.0, 0.0) * random_direction(random)).normalized();
   }
   return result;
 }
 
-/// Sphere, box and half-space meet each other in closed forms (two boxes: with a preference for
-/// faces); the other pairs by a search.
-bool has_closed_form(const Shape& shape) {
-  return std::holds_alternative<Sphere>(shape) || std::holds_alternative<Box>(shape) ||
-         std::holds_alternative<HalfSpace>(shape);
-}
+// Of the smaller size. A closed form loses some tens of roundings; 1e-9 is far above them.
+constexpr double kOfClosedForm = 1e-9;
+/// penetration() keeps directions within 1e-8 of the best one (separation.cpp), of which any may be
+/// returned.
+constexpr double kOfSearch = 1e-8;
+/// preference_tolerance(): a face is preferred to a direction along which the shapes are this much
+/// further apart; a corner this far beside a face counts as over it; a face's contact set may begin
+/// this far above the distance. So one of these for a gap; two for a point, which may lie beside
+/// two sides of a face at once (at a right angle the square root of two, at 60 degrees two), and
+/// for shapes that were moved until their two points meet, each of which may lie outside.
+constexpr double kPreference = 1e-6;
 
 class Judge {
  public:
@@ -69,28 +79,32 @@ class Judge {
       : pair_(pair), margin_(margin), random_(random) {
     const bool boxes = std::holds_alternative<Box>(pair.a) && std::holds_alternative<Box>(pair.b);
     const bool closed_form = has_closed_form(pair.a) && has_closed_form(pair.b);
-    const double rounding = 200.0 * pair.rounding;
-    allowed_ = (boxes ? 2e-6 : (closed_form ? 1e-9 : 1e-8)) * pair.size + rounding;
-    allowed_of_contacts_ = (boxes || !closed_form ? 2e-6 : 1e-9) * pair.size + rounding;
+    allowed_ = (closed_form ? kOfClosedForm : kOfSearch) * pair.size + 200.0 * pair.rounding;
+    preference_ = boxes || !closed_form ? kPreference * pair.size : 0.0;
     verdict_.fill(0.0);
   }
 
-  PairVerdict run() {
+  JudgedPair run() {
     try {
       judge_distance();
       judge_contacts();
     } catch (const std::invalid_argument&) {
       fail(PairProperty::kNoNaN);  // every pose of the study is a good one
     }
-    return verdict_;
+    return {verdict_, d_};
   }
 
  private:
   [[nodiscard]] double allowed(PairProperty property) const {
-    const bool of_distance =
-        property == PairProperty::kNoBetter || property == PairProperty::kTest ||
-        property == PairProperty::kExchange || property == PairProperty::kRigidMotion;
-    return of_distance ? allowed_ : allowed_of_contacts_;
+    switch (property) {
+      case PairProperty::kNoBetter:
+      case PairProperty::kTest:
+      case PairProperty::kExchange:
+      case PairProperty::kRigidMotion: return allowed_;
+      case PairProperty::kPoints:
+      case PairProperty::kParts: return allowed_ + 2.0 * preference_;
+      default: return allowed_ + preference_;
+    }
   }
   void off_by(PairProperty property, double metres) {
     double& worst = verdict_[static_cast<std::size_t>(property)];
@@ -126,7 +140,8 @@ class Judge {
     const std::vector<Contact> contacts = contacts_of(pair_, margin_);
     if (contacts.empty()) {
       if (std::isfinite(d_) && d_ <= margin_) {
-        off_by(PairProperty::kNothingMissed, std::max(margin_ - d_, 2.0 * allowed_of_contacts_));
+        off_by(PairProperty::kNothingMissed,
+               std::max(margin_ - d_, 2.0 * allowed(PairProperty::kNothingMissed)));
       }
       return;
     }
@@ -159,8 +174,8 @@ class Judge {
     require(PairProperty::kUnitNormal, std::abs(contact.normal.norm() - 1.0) <= 1e-12);
     off_by(PairProperty::kPoints,
            (contact.point_a - contact.point_b - contact.gap * contact.normal).norm());
-    const std::vector<Vec3> directions{contact.normal, Vec3(-contact.normal),
-                                       random_direction(random_), random_direction(random_)};
+    const std::array<Vec3, 4> directions{contact.normal, Vec3(-contact.normal),
+                                         random_direction(random_), random_direction(random_)};
     off_by(PairProperty::kPoints, outside(pair_.a, pair_.pose_a, contact.point_a, directions));
     off_by(PairProperty::kPoints, outside(pair_.b, pair_.pose_b, contact.point_b, directions));
     off_by(PairProperty::kNothingBeyond, contact.gap - margin_);
@@ -169,8 +184,8 @@ class Judge {
   const PlacedPair& pair_;
   double margin_;
   Random& random_;
-  double allowed_;              ///< of a distance, m
-  double allowed_of_contacts_;  ///< of a gap and a point
+  double allowed_;     ///< of a distance, m
+  double preference_;  ///< of what a contact set's direction is chosen by, m; 0: not chosen
   double d_ = 0.0;
   PairVerdict verdict_;
 };
@@ -194,14 +209,13 @@ std::string_view to_string(PairProperty property) {
   return "";
 }
 
-PairVerdict judge_pair(const PlacedPair& pair, double margin, Random& random) {
+JudgedPair judge_pair(const PlacedPair& pair, double margin, Random& random) {
   return Judge(pair, margin, random).run();
 }
 
 PlacedPair kissing(const PlacedPair& pair, Random& random) {
-  const double d = distance(pair);
-  const std::vector<Contact> contacts = contacts_of(pair, std::max(d, 0.0) + pair.size);
-  if (!std::isfinite(d) || contacts.empty()) {
+  const std::vector<Contact> contacts = contacts_of(pair, kInfinity);
+  if (contacts.empty()) {
     return pair;
   }
   const Contact& nearest =

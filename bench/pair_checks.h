@@ -27,18 +27,24 @@ inline constexpr int kPairProperties = 11;
 /// By property: how far (m) the answer is off, relative to what is allowed; more than 1 is wrong.
 using PairVerdict = std::array<double, kPairProperties>;
 
+struct JudgedPair {
+  PairVerdict verdict{};
+  double distance = 0.0;  ///< what signed_distance() says, m
+};
+
 /// Judges distance, test and find of one pair by properties that need no second implementation:
 /// for any unit n, s(n) = -h_A(-n) - h_B(n) <= d by the support functions h, and d <= |P_A - P_B|
 /// for any two points of the shapes, so that s(N) = gap = N.(P_A - P_B) proves d where they are
 /// apart. Where they overlap d = max s(n): N itself and 40 directions around it and at random are
 /// tried.
 ///
-/// Allowed, of the smaller size: 1e-9 between sphere, box and half-space; of the pairs that are
-/// found by a search (convex_pairs.h) 1e-8 of a distance; 2e-6 of what is said of contacts where
-/// faces are preferred by a tolerance (box_separation.h, separation.h); and 200 roundings of the
-/// pair's numbers.
-[[nodiscard]] PairVerdict judge_pair(const collision::testing::PlacedPair& pair, double margin,
-                                     collision::testing::Random& random);
+/// Allowed of a distance, of the smaller size: 1e-9 between sphere, box and half-space, 1e-8
+/// between pairs that are found by a search (convex_pairs.h); and 200 roundings of the pair's
+/// numbers. Where faces are preferred by a tolerance (box_separation.h, separation.h: 1e-6) once
+/// that tolerance more of a gap, and twice of a point and of the distance of shapes that were moved
+/// to touch.
+[[nodiscard]] JudgedPair judge_pair(const collision::testing::PlacedPair& pair, double margin,
+                                    collision::testing::Random& random);
 
 /// The pair moved along its normal until it kisses: the gap is 0, or up to 1e-9 of the size from
 /// it, or a few roundings. Unchanged where it has no finite distance.

@@ -1,11 +1,14 @@
 #include "bench/broad_phase_study.h"
 #include "bench/contact_study.h"
+#include "bench/contact_time_study.h"
 #include "bench/narrow_phase_study.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <map>
 #include <sstream>
 #include <stdexcept>
+#include <string>
 
 namespace signorini::bench {
 namespace {
@@ -36,12 +39,26 @@ TEST(PairChecks, SeeARefusal) {
   testing::PlacedPair pair{Sphere{1.0}, {Vec3(0.0, 0.0, 1.9), Quat::Identity()}, Sphere{1.0}, {}};
   pair.size = 1.0;
   pair.rounding = 1e-15;
-  const auto worst = [&](const PairVerdict& verdict) {
-    return *std::max_element(verdict.begin(), verdict.end());
+  const auto worst = [&](const JudgedPair& judged) {
+    return *std::max_element(judged.verdict.begin(), judged.verdict.end());
   };
   EXPECT_LE(worst(judge_pair(pair, 0.1, random)), 1.0);
   pair.pose_b.orientation = Quat(2.0, 0.0, 0.0, 0.0);  // refused by the queries
   EXPECT_GT(worst(judge_pair(pair, 0.1, random)), 1.0);
+}
+
+TEST(ContactTimeStudy, MissesNothingOnASample) {
+  std::ostringstream out;
+  const ContactTimeReport report = run_contact_time_study({.throws = 105, .seed = 7}, out);
+  EXPECT_TRUE(report.passed()) << out.str();
+  ASSERT_EQ(report.rows.size(), 35U);
+  long hits = 0;
+  for (const ContactTimeRow& row : report.rows) {
+    EXPECT_EQ(row.throws, 3) << row.pair;
+    hits += row.hits;
+  }
+  EXPECT_GT(hits, 35);
+  EXPECT_NE(report.to_csv().find("sphere-sphere,3,"), std::string::npos);
 }
 
 TEST(NarrowPhaseStudy, AllOurPointsAreValid) {
@@ -52,6 +69,13 @@ TEST(NarrowPhaseStudy, AllOurPointsAreValid) {
       EXPECT_GE(row.points, 1.0) << row.pair;
       EXPECT_NEAR(row.valid, row.points, 1e-9) << row.pair;
     }
+  }
+  // Nobody has more points that carry something.
+  std::map<std::string, double> ours;
+  for (const NarrowPhaseRow& row : report.rows) {
+    const double most = ours.try_emplace(row.pair, row.corners).first->second;  // ours comes first
+    EXPECT_LE(row.corners, most) << row.pair << ", " << row.name;
+    EXPECT_LE(row.corners, row.valid) << row.pair << ", " << row.name;
   }
 }
 
