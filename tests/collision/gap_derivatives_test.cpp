@@ -120,6 +120,63 @@ std::string kind_of(const Contact& contact, bool is_vertex) {
          "/" + side(contact.surface_b) + (is_vertex ? "" : ", clipped");
 }
 
+/// Moves A along the normal until the least gap is this one, and finds the contacts there.
+std::vector<Contact> contacts_at_gap(testing::PlacedPair& pair, double gap, double margin) {
+  std::vector<Contact> contacts;
+  find_intersection(pair.a, pair.pose_a, pair.b, pair.pose_b, 1e9, contacts);
+  const auto& least = *std::min_element(contacts.begin(), contacts.end(),
+                                        [](auto& p, auto& q) { return p.gap < q.gap; });
+  pair.pose_a.position += (gap - least.gap) * least.normal;
+  find_intersection(pair.a, pair.pose_a, pair.b, pair.pose_b, margin, contacts);
+  return contacts;
+}
+
+struct Predicted {
+  Difference gap;
+  bool is_degenerate;
+};
+
+/// d' and d'' as the library says.
+Predicted predicted(const Contact& contact, const MovingBody& body_a, const MovingBody& body_b) {
+  const GapKinematics kinematics =
+      gap_kinematics(contact, {body_a.start.position, body_a.start.orientation}, body_a.velocity,
+                     {body_b.start.position, body_b.start.orientation}, body_b.velocity);
+  const double second =
+      contact.normal.dot(body_a.acceleration_at(contact.point_a - body_a.start.position) -
+                         body_b.acceleration_at(contact.point_b - body_b.start.position)) +
+      kinematics.curvature_acceleration;
+  return {{kinematics.d_dot, second}, kinematics.degenerate};
+}
+
+/// What was compared, by kind of contact.
+class Comparison {
+ public:
+  void leave_out() { ++left_out_; }
+  void compare(const std::string& kind, const Difference& measured, const Difference& said,
+               double tolerance, const testing::PlacedPair& pair) {
+    ASSERT_NEAR(measured.first, said.first, tolerance) << kind << "\n" << describe(pair);
+    ASSERT_NEAR(measured.second, said.second, tolerance) << kind << "\n" << describe(pair);
+    ++compared_[kind];
+    worst_[kind] = std::max(worst_[kind], std::abs(measured.second - said.second));
+  }
+  /// Prints the counts. Every one of these kinds must have come up.
+  void finish(const std::vector<std::string>& kinds) {
+    for (const auto& [kind, count] : compared_) {
+      std::printf("    %-40s %6d contacts, d'' within %.1e\n", kind.c_str(), count, worst_[kind]);
+    }
+    std::printf("    left out: %d\n", left_out_);
+    for (const std::string& kind : kinds) {
+      EXPECT_GT(compared_[kind], 0) << kind;
+    }
+  }
+  [[nodiscard]] int left_out() const { return left_out_; }
+
+ private:
+  std::map<std::string, int> compared_;
+  std::map<std::string, double> worst_;
+  int left_out_ = 0;
+};
+
 bool is_polyhedron_vertex(Feature feature) {
   return feature == 0 || feature == 2 || feature == 6 || feature == 8 || feature == 18 ||
          feature == 20 || feature == 24 || feature == 26;
@@ -133,9 +190,7 @@ TEST(GapDerivatives, OfEveryContactMatchFiniteDifferences) {
       {ShapeKind::kBox, ShapeKind::kHalfSpace}, {ShapeKind::kHalfSpace, ShapeKind::kBox},
       {ShapeKind::kBox, ShapeKind::kBox},       {ShapeKind::kBox, ShapeKind::kBox},
       {ShapeKind::kBox, ShapeKind::kBox}};
-  std::map<std::string, int> compared;
-  std::map<std::string, double> worst;
-  int left_out = 0;
+  Comparison comparison;
   for (int k = 0; k < kPoses; ++k) {
     const Shape a = kKinds[k % 9][0] == ShapeKind::kSphere ? Shape(Sphere{0.7})
                     : kKinds[k % 9][0] == ShapeKind::kBox  ? Shape(Box{{0.5, 0.8, 0.6}})
@@ -151,25 +206,12 @@ TEST(GapDerivatives, OfEveryContactMatchFiniteDifferences) {
     if (k % 18 >= 9) {
       pair.pose_a.position = 2.0 * testing::random_direction(random);
     }
-    std::vector<Contact> contacts;
-    find_intersection(a, pair.pose_a, b, pair.pose_b, 1e9, contacts);
-    // Near contact, touching, or a little overlapping: gaps of -0.05, 0, 0.05, 0.3.
-    const auto& least = *std::min_element(contacts.begin(), contacts.end(),
-                                          [](auto& p, auto& q) { return p.gap < q.gap; });
     constexpr double kGaps[] = {-0.05, 0.0, 0.05, 0.3};
-    pair.pose_a.position += (kGaps[k / 18 % 4] - least.gap) * least.normal;
-    find_intersection(a, pair.pose_a, b, pair.pose_b, 0.5, contacts);
-
+    const std::vector<Contact> contacts = contacts_at_gap(pair, kGaps[k / 18 % 4], 0.5);
     const MovingBody body_a = random_body(random, pair.pose_a, 1.0);
     const MovingBody body_b = random_body(random, pair.pose_b, 1.0);
     for (const Contact& contact : contacts) {
-      const GapKinematics kinematics = gap_kinematics(
-          contact, {body_a.start.position, body_a.start.orientation}, body_a.velocity,
-          {body_b.start.position, body_b.start.orientation}, body_b.velocity);
-      const double second =
-          contact.normal.dot(body_a.acceleration_at(contact.point_a - body_a.start.position) -
-                             body_b.acceleration_at(contact.point_b - body_b.start.position)) +
-          kinematics.curvature_acceleration;
+      const Predicted said = predicted(contact, body_a, body_b);
       const auto feature_a = static_cast<Feature>(contact.feature_id >> 32);
       const auto feature_b = static_cast<Feature>(contact.feature_id);
       const bool on_face =
@@ -188,8 +230,8 @@ TEST(GapDerivatives, OfEveryContactMatchFiniteDifferences) {
                     },
                     h)
               : differences([&](double t) { return gap_at(a, body_a, b, body_b, contact, t); }, h);
-      if (!measured || kinematics.degenerate) {
-        ++left_out;  // the features change within 2 ms
+      if (!measured || said.is_degenerate) {
+        comparison.leave_out();  // the features change within 2 ms
         continue;
       }
       // Truncation: h^4 times a fifth or sixth derivative of a gap function whose scale of length
@@ -205,30 +247,23 @@ TEST(GapDerivatives, OfEveryContactMatchFiniteDifferences) {
       }
       const double tolerance = 1e-7 / std::pow(scale, 5);
       if (scale < 0.2) {
-        ++left_out;
+        comparison.leave_out();
         continue;
       }
       const std::string kind = kind_of(contact, !clipped);
-      ASSERT_NEAR(measured->first, kinematics.d_dot, tolerance) << kind << "\n" << describe(pair);
-      ASSERT_NEAR(measured->second, second, tolerance) << kind << " " << scale << "\n"
-                                                       << describe(pair);
-      ++compared[kind];
-      worst[kind] = std::max(worst[kind], std::abs(measured->second - second));
+      comparison.compare(kind, *measured, said.gap, tolerance, pair);
+      if (HasFatalFailure()) {
+        return;
+      }
     }
   }
-  for (const auto& [kind, count] : compared) {
-    std::printf("    %-40s %6d contacts, d'' within %.1e\n", kind.c_str(), count, worst[kind]);
-  }
-  std::printf("    left out: %d\n", left_out);
-  EXPECT_LT(left_out, kPoses / 20);
-  for (const char* kind :
-       {"face of A, face/vertex", "face of B, vertex/face", "face of B, round/face",
-        "face of A, face/round", "edge-edge, edge/edge", "curved, round/round",
-        "curved, round/edge", "curved, round/vertex", "curved, edge/round", "curved, vertex/round",
-        "curved, vertex/vertex", "curved, vertex/edge", "curved, edge/vertex",
-        "face of A, face/vertex, clipped", "face of B, vertex/face, clipped"}) {
-    EXPECT_GT(compared[kind], 0) << kind;
-  }
+  EXPECT_LT(comparison.left_out(), kPoses / 20);
+  comparison.finish({"face of A, face/vertex", "face of B, vertex/face", "face of B, round/face",
+                     "face of A, face/round", "edge-edge, edge/edge", "curved, round/round",
+                     "curved, round/edge", "curved, round/vertex", "curved, edge/round",
+                     "curved, vertex/round", "curved, vertex/vertex", "curved, vertex/edge",
+                     "curved, edge/vertex", "face of A, face/vertex, clipped",
+                     "face of B, vertex/face, clipped"});
 }
 
 /// The least radius of curvature that the gap of a contact bends with.
@@ -256,9 +291,7 @@ TEST(GapDerivatives, OfRoundShapesMatchFiniteDifferences) {
   const Shape others[] = {
       HalfSpace{},        Sphere{0.6},    Box{{0.9, 0.4, 0.7}},      Capsule{0.3, 0.8},
       Cylinder{0.6, 0.5}, Cone{0.7, 0.6}, Ellipsoid{{0.8, 0.6, 0.5}}};
-  std::map<std::string, int> compared;
-  std::map<std::string, double> worst;
-  int left_out = 0;
+  Comparison comparison;
   for (int k = 0; k < 6000; ++k) {
     const Shape& a = round[k % 4];
     const Shape& b = others[k / 4 % 7];
@@ -267,23 +300,12 @@ TEST(GapDerivatives, OfRoundShapesMatchFiniteDifferences) {
         {2.5 * testing::random_direction(random), testing::random_orientation(random)},
         b,
         {Vec3::Zero(), testing::random_orientation(random)}};
-    std::vector<Contact> contacts;
-    find_intersection(a, pair.pose_a, b, pair.pose_b, 1e9, contacts);
-    const auto& least = *std::min_element(contacts.begin(), contacts.end(),
-                                          [](auto& p, auto& q) { return p.gap < q.gap; });
     constexpr double kGaps[] = {-0.02, 0.0, 0.05, 0.3};
-    pair.pose_a.position += (kGaps[k / 28 % 4] - least.gap) * least.normal;
-    find_intersection(a, pair.pose_a, b, pair.pose_b, 0.31, contacts);
+    const std::vector<Contact> contacts = contacts_at_gap(pair, kGaps[k / 28 % 4], 0.31);
     const MovingBody body_a = random_body(random, pair.pose_a, 1.0);
     const MovingBody body_b = random_body(random, pair.pose_b, 1.0);
     for (const Contact& contact : contacts) {
-      const GapKinematics kinematics = gap_kinematics(
-          contact, {body_a.start.position, body_a.start.orientation}, body_a.velocity,
-          {body_b.start.position, body_b.start.orientation}, body_b.velocity);
-      const double second =
-          contact.normal.dot(body_a.acceleration_at(contact.point_a - body_a.start.position) -
-                             body_b.acceleration_at(contact.point_b - body_b.start.position)) +
-          kinematics.curvature_acceleration;
+      const Predicted said = predicted(contact, body_a, body_b);
       const bool on_face =
           contact.owner == NormalOwner::kFaceA || contact.owner == NormalOwner::kFaceB;
       const LocalSurface& incident =
@@ -303,30 +325,23 @@ TEST(GapDerivatives, OfRoundShapesMatchFiniteDifferences) {
                     h)
               : differences([&](double t) { return gap_at(a, body_a, b, body_b, contact, t); }, h);
       const double scale = bending_scale(contact);
-      if (!measured || kinematics.degenerate || scale < 0.2) {
-        ++left_out;
+      if (!measured || said.is_degenerate || scale < 0.2) {
+        comparison.leave_out();
         continue;
       }
       const std::string kind = kind_of(contact, !is_material);
       const double tolerance = 1e-6 / std::pow(scale, 5);
-      ASSERT_NEAR(measured->first, kinematics.d_dot, tolerance) << kind << "\n" << describe(pair);
-      ASSERT_NEAR(measured->second, second, tolerance) << kind << " " << scale << "\n"
-                                                       << describe(pair);
-      ++compared[kind];
-      worst[kind] = std::max(worst[kind], std::abs(measured->second - second));
+      comparison.compare(kind, *measured, said.gap, tolerance, pair);
+      if (HasFatalFailure()) {
+        return;
+      }
     }
   }
-  for (const auto& [kind, count] : compared) {
-    std::printf("    %-40s %6d contacts, d'' within %.1e\n", kind.c_str(), count, worst[kind]);
-  }
-  std::printf("    left out: %d\n", left_out);
-  for (const char* kind :
-       {"face of A, face/round", "face of B, round/face", "face of B, vertex/face, clipped",
-        "curved, round/round", "curved, round/vertex", "curved, vertex/round", "curved, round/edge",
-        "curved, generator/round", "curved, round/generator", "curved, generator/vertex",
-        "curved, generator/edge", "curved, generator/generator"}) {
-    EXPECT_GT(compared[kind], 0) << kind;
-  }
+  comparison.finish(
+      {"face of A, face/round", "face of B, round/face", "face of B, vertex/face, clipped",
+       "curved, round/round", "curved, round/vertex", "curved, vertex/round", "curved, round/edge",
+       "curved, generator/round", "curved, round/generator", "curved, generator/vertex",
+       "curved, generator/edge", "curved, generator/generator"});
 }
 
 TEST(GapDerivatives, BallRollingOnAPlaneAcceleratesAsItsCentre) {
@@ -336,14 +351,9 @@ TEST(GapDerivatives, BallRollingOnAPlaneAcceleratesAsItsCentre) {
   const MovingBody ball{{{0, 0, 0.5}, Quat::Identity()},
                         {{50.0, 0, 0}, {0, 100.0, 0}},
                         {{0, 0, -9.81}, Vec3::Zero()}};
-  const GapKinematics kinematics =
-      gap_kinematics(contacts[0], {ball.start.position, ball.start.orientation}, ball.velocity,
-                     {Vec3::Zero(), Quat::Identity()}, {});
-  EXPECT_NEAR(kinematics.d_dot, 0.0, 1e-15);
-  const double second =
-      contacts[0].normal.dot(ball.acceleration_at(contacts[0].point_a - ball.start.position)) +
-      kinematics.curvature_acceleration;
-  EXPECT_NEAR(second, -9.81, 1e-11);  // 5000 m/s^2 of centripetal acceleration cancel
+  const Difference said = predicted(contacts[0], ball, MovingBody{}).gap;
+  EXPECT_NEAR(said.first, 0.0, 1e-15);
+  EXPECT_NEAR(said.second, -9.81, 1e-11);  // 5000 m/s^2 of centripetal acceleration cancel
 }
 
 }  // namespace
