@@ -124,10 +124,18 @@ void CollisionWorld::find(const State& state, double margin, ContactSet& contact
       contact.body_a = colliders_[a].body;
       contact.body_b = colliders_[b].body;
       contact.material = pair(colliders_[a].material, colliders_[b].material, rule_);
+      contact.friction_direction = friction_direction(a, b);
       contact.feature_id = scene_feature_id(a, b, contact.feature_id);
       contacts.push_back(contact);
     }
   }
+}
+
+/// That of collider a, if it has one, else that of b; world axes.
+Vec3 CollisionWorld::friction_direction(int collider_a, int collider_b) const {
+  const bool of_a = !colliders_[collider_a].friction_direction.isZero(0.0);
+  const int chosen = of_a ? collider_a : collider_b;
+  return poses_[chosen].orientation * colliders_[chosen].friction_direction;
 }
 
 std::optional<FirstContact> CollisionWorld::first_contact(std::span<const Motion* const> motions,

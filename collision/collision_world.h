@@ -49,6 +49,7 @@ class CollisionWorld final : public ContactFinder {
 
  private:
   [[nodiscard]] bool may_touch(int collider_a, int collider_b) const;
+  [[nodiscard]] Vec3 friction_direction(int collider_a, int collider_b) const;
 
   std::vector<Collider> colliders_;
   std::vector<bool> is_dynamic_;  ///< by body

@@ -86,6 +86,10 @@ void validate(const Collider& collider, int body_count) {
     validate(collider.shape);
     validate(collider.local);
     validate(collider.material);
+    if (!collider.friction_direction.allFinite()) {
+      throw std::invalid_argument("friction_direction: must be finite, got " +
+                                  number_text(collider.friction_direction));
+    }
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument("collider '" + collider.name + "': " + error.what());
   }

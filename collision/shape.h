@@ -86,6 +86,9 @@ struct Collider {
   Material material;
   std::string name;  ///< for reports
   CollisionFilter filter = {};
+  /// In the shape's frame: along it mu is material.friction, across it friction_ratio times that.
+  /// Zero: none. Of a pair that of the first collider which has one counts.
+  Vec3 friction_direction = Vec3::Zero();
 };
 
 /// @throws std::invalid_argument naming the shape, the field, its value and the bound.

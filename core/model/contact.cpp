@@ -70,6 +70,10 @@ void validate(const ContactSet& contacts, int body_count) {
     }
     validate_surface(i, "surface_a", contact.surface_a);
     validate_surface(i, "surface_b", contact.surface_b);
+    if (!contact.friction_direction.allFinite()) {
+      refuse(i,
+             "friction_direction: must be finite, got " + number_text(contact.friction_direction));
+    }
     try {
       validate(contact.material);
     } catch (const std::invalid_argument& error) {

@@ -57,6 +57,9 @@ struct Contact {
   LocalSurface surface_a;  ///< for N' and d''
   LocalSurface surface_b;
   Material material;  ///< of the pair, by the pairing rule
+  /// Along which mu is material.friction; its part across N counts, world axes. Zero, or along N:
+  /// any. Only with a friction_ratio other than 1.
+  Vec3 friction_direction = Vec3::Zero();
 };
 
 /// The reduced contact set of a state, in an order that depends on the input alone.
@@ -65,7 +68,7 @@ using ContactSet = std::vector<Contact>;
 /// Checks a contact set that came from outside. @throws std::invalid_argument naming the contact's
 /// number, the field, its value and the bound: bodies in range and different, points and gap
 /// finite, |N| within 1e-9 of 1 (a zero normal is named as such), radii of the surfaces in
-/// [0, infinity] and their directions unit to 1e-9, material valid.
+/// [0, infinity] and their directions unit to 1e-9, material valid, friction_direction finite.
 void validate(const ContactSet& contacts, int body_count);
 
 }  // namespace signorini

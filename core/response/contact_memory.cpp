@@ -13,6 +13,13 @@ auto key(const Keyed& keyed) {
   return std::tie(keyed.body_a, keyed.body_b, keyed.feature_id);
 }
 
+/// The z of z t = the part of an impulse along t.
+double along(const Vec3& t, const Vec3& impulse) {
+  const double square = t.squaredNorm();
+  const bool is_unit = std::abs(square - 1.0) < 1e-12;  // the same bits as without a scale
+  return is_unit ? t.dot(impulse) : t.dot(impulse) / square;
+}
+
 /// beta of the two directions j, j + 1 between which the impulse (a, b) along (t1, t2) lies: the
 /// directions are at 2 pi j / k, and sin(d) beta_j = |(a, b)| sin(of the angle to the other one).
 void split(double a, double b, int sides, double* beta) {
@@ -98,7 +105,7 @@ int ContactMemory::recall(const PyramidProblem& pyramid, const ContactSet& conta
   for (int c = 0; c < frictional; ++c) {
     if (const Entry* entry = find(contacts[pyramid.frictional[c]])) {
       const TangentFrame& frame = pyramid.frames[c];
-      split(frame.t1.dot(entry->friction), frame.t2.dot(entry->friction), pyramid.sides,
+      split(along(frame.t1, entry->friction), along(frame.t2, entry->friction), pyramid.sides,
             z.data() + normals + pyramid.sides * c);
       z[normals + pyramid.sides * frictional + c] = std::max(entry->slip, 0.0);
     }
@@ -119,8 +126,8 @@ int ContactMemory::recall(const ConeProblem& cones, const ContactSet& contacts,
     const int row = cones.normal_row[i];
     z[row] = std::max(entry->whole.dot(contacts[i].normal), 0.0);
     if (cones.friction[i] > 0.0) {
-      z[row + 1] = cones.frames[i].t1.dot(entry->whole);
-      z[row + 2] = cones.frames[i].t2.dot(entry->whole);
+      z[row + 1] = along(cones.frames[i].t1, entry->whole);
+      z[row + 2] = along(cones.frames[i].t2, entry->whole);
     }
   }
   return known;

@@ -48,9 +48,11 @@ bool collect(const VelocityProblem& velocity, const ContactSet& contacts,
   if (usable) {
     const lcp::Vector normals = velocity.normal_impulses(result.z);
     const std::vector<Vec3> impulses = velocity.impulses(contacts, result.z);
+    const std::vector<Vec3> moments = velocity.moments(result.z);
     for (std::size_t j = 0; j < members.size(); ++j) {
       solution.normal_impulses[members[j]] = normals[static_cast<lcp::Index>(j)];
       solution.impulses[members[j]] = impulses[j];
+      solution.moments[members[j]] = moments[j];
     }
   }
   return usable;
@@ -105,6 +107,7 @@ void ContactSolver::solve(const Bodies& bodies, const ContactSet& contacts,
   fresh.status = lcp::Status::kSolved;
   fresh.normal_impulses = lcp::Vector::Zero(allowance.size());
   fresh.impulses.assign(contacts.size(), Vec3::Zero());
+  fresh.moments.assign(contacts.size(), Vec3::Zero());
   fresh.island_of.assign(contacts.size(), -1);
   fresh.accuracy = settings_.accuracy ? settings_.accuracy->name() : "";
   fresh.is_deterministic =
@@ -138,6 +141,7 @@ void ContactSolver::solve(const Bodies& bodies, const ContactSet& contacts,
 
   const double before = kinetic_energy(bodies, state);
   apply_contact_impulses(bodies, contacts, fresh.impulses, state);
+  apply_contact_moments(bodies, contacts, fresh.moments, state);
   fresh.energy_change = kinetic_energy(bodies, state) - before;
   solution = std::move(fresh);
 }

@@ -42,6 +42,7 @@ struct ContactSolution {
   lcp::Status status = lcp::Status::kNotRun;
   lcp::Vector normal_impulses;        ///< f, N s, one a contact
   std::vector<Vec3> impulses;         ///< on A (on B: minus that), world axes, N s, one a contact
+  std::vector<Vec3> moments;          ///< of rolling and spinning friction, on A, N m s
   std::vector<int> island_of;         ///< of each contact, into `islands`
   std::vector<IslandReport> islands;  ///< solved apart, in the order of their first contact
   /// Of the island that ended worst (not solved before solved, then by the unit-free residual);

@@ -116,6 +116,11 @@ class EventStepper::Run {
     finder_.find(state, settings_.touching, contacts_);
     validate(contacts_, static_cast<int>(bodies_.size()));
     for (const Contact& contact : contacts_) {
+      if (contact.material.resists_turning()) {
+        throw std::invalid_argument("event stepper: rolling and spinning friction must be 0, got " +
+                                    number_text(contact.material.rolling_friction) + " and " +
+                                    number_text(contact.material.spinning_friction) + " m");
+      }
       if (contact.material.friction > 0.0) {
         throw std::invalid_argument("event stepper: friction of bodies " +
                                     std::to_string(contact.body_a) + " and " +

@@ -44,7 +44,7 @@ void assemble_cones(const Bodies& bodies, const State& free_state, const Contact
                 allowance[static_cast<lcp::Index>(i)]);
     if (contact.material.friction > 0.0) {
       const Vec3 slip = slip_velocity(velocities, free_state, contact);
-      const TangentFrame frame = tangent_frame(contact.normal, slip);
+      const TangentFrame frame = friction_frame(contact, slip);
       for (const Vec3& tangent : {frame.t1, frame.t2}) {
         add_tangent_row(free_state, contact, tangent, rows);
         q.push_back(tangent.dot(slip));

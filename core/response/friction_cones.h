@@ -15,7 +15,7 @@ namespace signorini {
 ///     ..] q = [.., d_i'* + allowance_i, u_T*, ..]  m/s  A = J M^-1 J^T over all these rows 0 <=
 ///     f_i ⊥ w_N >= 0,   |beta_i| <= mu_i f_i,   beta_i = -mu_i f_i u_T+/|u_T+| where it slides
 ///
-/// u* the velocities without contact impulses; friction acts at friction_point(). Without friction
+/// t1, t2: friction_frame(), with anisotropic friction scaled. u* the velocities without contact impulses; friction acts at friction_point(). Without friction
 /// it is the frictionless LCP. M is left factored. Rows of joints
 /// (joint_rows.h) follow after those of all contacts, with their bounds.
 struct ConeProblem {

@@ -114,7 +114,7 @@ void assemble_pyramid(const Bodies& bodies, const State& free_state, const Conta
   for (int i = 0; i < normals; ++i) {
     if (contacts[i].material.friction > 0.0) {
       const Vec3 slip = slip_velocity(bodies, free_state, contacts[i]);
-      const TangentFrame frame = tangent_frame(contacts[i].normal, slip);
+      const TangentFrame frame = friction_frame(contacts[i], slip);
       add_tangent_row(free_state, contacts[i], frame.t1, rows);
       add_tangent_row(free_state, contacts[i], frame.t2, rows);
       out.frictional.push_back(i);

@@ -23,7 +23,7 @@ namespace signorini {
 ///         | S mu  -S E^T  0 |        | 0               |    S (mu f - E^T beta)
 ///
 /// beta_ij is the impulse along direction j of contact i, t1 cos(2 pi j/k) + t2 sin(2 pi j/k),
-/// D u_t the slip along it; u* the velocities without contact impulses. A is over normals and
+/// D u_t the slip along it (frames: friction_frame()); u* the velocities without contact impulses. A is over normals and
 /// directions. f and beta are in N s, lambda (the slip speed) and all of w in m/s: to that end the
 /// last rows carry S = diag(A_nn) (Stewart and Trinkle: 1), so that the certificate's unit-free
 /// residual judges every row, whatever the masses are. With S = 1 M is copositive, z^T M z =

@@ -243,6 +243,9 @@ IslandReport describe(const ContactIsland& island, const lcp::Problem& problem,
   report.rows = static_cast<int>(problem.size());
   report.model = (report.contacts == 1 && report.joint_rows == 0 ? "single contact, " : "") +
                  std::string(friction ? to_string(model) : "frictionless");
+  if (model == FrictionModel::kCone && !problem.limits.empty()) {
+    report.model += ", box where turning is resisted";
+  }
   report.solver = result.solver;
   report.status = result.status;
   report.unit_free_residual = result.certificate.unit_free_residual;

@@ -39,6 +39,7 @@ struct StepReport {
   ContactSet contacts;                ///< those in the problem
   lcp::Vector normal_impulses;        ///< N s, one for each of `contacts`
   std::vector<Vec3> impulses;         ///< whole contact impulses on A, world, N s
+  std::vector<Vec3> moments;          ///< of rolling and spinning friction, on A, world, N m s
   std::vector<int> island_of;         ///< of each of `contacts`, into `islands`
   std::vector<IslandReport> islands;  ///< solved apart, in the order of their first contact
   std::vector<JointReport> joints;    ///< one a joint of the stepper; no impulse while asleep

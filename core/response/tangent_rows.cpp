@@ -3,12 +3,29 @@
 #include <utility>
 
 namespace signorini {
+namespace {
+
+constexpr double kLeastAlong = 1e-9;  // of a unit direction's part across N
+
+}  // namespace
 
 TangentFrame tangent_frame(const Vec3& normal, const Vec3& slip) {
   const Vec3 tangential = slip - slip.dot(normal) * normal;
   const double speed = tangential.norm();
   const Vec3 t1 = speed >= kAligningSlip ? Vec3(tangential / speed) : normal.unitOrthogonal();
   return {t1, normal.cross(t1)};
+}
+
+TangentFrame friction_frame(const Contact& contact, const Vec3& slip) {
+  const double ratio = contact.material.friction_ratio;
+  if (ratio == 1.0) {
+    return tangent_frame(contact.normal, slip);
+  }
+  const Vec3& normal = contact.normal;
+  const Vec3 direction = contact.friction_direction.normalized();  // zero stays
+  const Vec3 along = direction - direction.dot(normal) * normal;
+  const Vec3 t1 = along.norm() > kLeastAlong ? along.normalized() : normal.unitOrthogonal();
+  return {t1, ratio * normal.cross(t1)};
 }
 
 Vec3 friction_point(const Contact& contact) {

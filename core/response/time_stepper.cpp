@@ -347,6 +347,7 @@ void TimeStepper::solve_islands(const std::vector<ContactIsland>& islands, const
 
   report.normal_impulses = lcp::Vector::Zero(static_cast<lcp::Index>(report.contacts.size()));
   report.impulses.assign(report.contacts.size(), Vec3::Zero());
+  report.moments.assign(report.contacts.size(), Vec3::Zero());
   report.island_of.assign(report.contacts.size(), -1);
   report.joints.assign(joints_.size(), {});
   report.islands.clear();
@@ -391,9 +392,11 @@ void TimeStepper::collect(IslandAnswer& answer, const ContactIsland& island, con
     answer.velocity.remember(answer.contacts, result.z, next_memory_);
     const lcp::Vector normals = answer.velocity.normal_impulses(result.z);
     const std::vector<Vec3> impulses = answer.velocity.impulses(answer.contacts, result.z);
+    const std::vector<Vec3> moments = answer.velocity.moments(result.z);
     for (std::size_t j = 0; j < island.members.size(); ++j) {
       report.normal_impulses[island.members[j]] = normals[static_cast<lcp::Index>(j)];
       report.impulses[island.members[j]] = impulses[j];
+      report.moments[island.members[j]] = moments[j];
     }
     const lcp::Vector joint_impulses = answer.velocity.joint_impulses(result.z);
     remember_joints(island.joints, joint_impulses, next_joint_memory_);
@@ -462,6 +465,7 @@ void TimeStepper::project(const Bodies& solved, State& state, StepReport& report
 void TimeStepper::apply(const Bodies& solved, State& state, StepReport& report) const {
   const double before = kinetic_energy(bodies_, state);
   apply_contact_impulses(bodies_, report.contacts, report.impulses, state);
+  apply_contact_moments(bodies_, report.contacts, report.moments, state);
   apply_joint_impulses(bodies_, joints_, report.joints, state);
   if (report.stiffened_bodies > 0) {
     for (std::size_t k = 0; k < bodies_.size(); ++k) {

@@ -117,6 +117,9 @@ inline constexpr double kRestingSpeed = 1e-6;
 ///    kRestingSpeed and restitution_threshold: a ball that bounces leaves by itself, and lifting it
 ///    would give it energy.
 ///
+/// Rolling and spinning friction (turning_rows.h) add rows with limits coupled to their normals, in
+/// every friction model; they start cold in every step. Anisotropic friction: friction_frame().
+///
 /// Joints (joint.h) add the rows of joint_rows.h, free or with bounds, to the same problem in every
 /// friction model; islands are connected by them, and the projection closes what a step opened. A
 /// body that swings at w loses (w h)^2 of the kinetic energy that its centre of mass has, a step,

@@ -8,15 +8,20 @@
 namespace signorini {
 namespace {
 
-/// The cones' rows with each tangent bounded by itself.
-void make_box(ConeProblem& cones) {
-  for (const lcp::FrictionCone& cone : cones.problem.cones) {
+/// The rows of some cones with each tangent bounded by itself.
+/// @param is_boxed says which, by their normal rows
+template <typename Choice>
+void make_box(const Choice& is_boxed, ConeProblem& cones) {
+  std::erase_if(cones.problem.cones, [&](const lcp::FrictionCone& cone) {
+    if (!is_boxed(cone.normal_row)) {
+      return false;
+    }
     for (const int row : {cone.normal_row + 1, cone.normal_row + 2}) {
       cones.problem.limits.push_back(
           {.row = row, .normal_row = cone.normal_row, .coefficient = cone.coefficient});
     }
-  }
-  cones.problem.cones.clear();
+    return true;
+  });
 }
 
 bool is_within(const ConeProblem& cones, const lcp::Vector& z) {
@@ -42,10 +47,20 @@ void VelocityProblem::assemble(FrictionModel model, const Bodies& bodies, const 
                                int sides, std::span<const JointRow> joints) {
   contacts_ = static_cast<Eigen::Index>(contacts.size());
   joints_ = static_cast<Eigen::Index>(joints.size());
+  turning_rows(bodies, free_state, contacts, turning_);
+  std::vector<JointRow> behind;
+  if (!turning_.empty()) {
+    for (const TurningRow& turning : turning_) {
+      behind.push_back(turning.row);
+    }
+    behind.insert(behind.end(), joints.begin(), joints.end());
+    joints = behind;
+  }
   if (model == FrictionModel::kPyramid) {
     PyramidProblem pyramid;
     assemble_pyramid(bodies, free_state, contacts, allowance, sides, pyramid, joints);
     form_ = std::move(pyramid);
+    limit_turning();
     return;
   }
   ConeProblem cones;
@@ -53,10 +68,31 @@ void VelocityProblem::assemble(FrictionModel model, const Bodies& bodies, const 
     cones = std::move(*used);
   }
   assemble_cones(bodies, free_state, contacts, allowance, cones, joints);
-  if (model == FrictionModel::kBox) {
-    make_box(cones);
+  if (model == FrictionModel::kBox || !turning_.empty()) {
+    make_box([&](int row) { return model == FrictionModel::kBox || has_turning(row, cones); },
+             cones);
   }
   form_ = std::move(cones);
+  limit_turning();
+}
+
+/// A cone's rows take no part in coupled limits, so the contact of such rows has a box.
+bool VelocityProblem::has_turning(int normal_row, const ConeProblem& cones) const {
+  return std::ranges::binary_search(turning_, normal_row, {}, [&](const TurningRow& turning) {
+    return cones.normal_row[turning.contact];  // ascending
+  });
+}
+
+void VelocityProblem::limit_turning() {
+  const auto* cones = std::get_if<ConeProblem>(&form_);
+  lcp::Problem& asked = std::visit([](auto& form) -> lcp::Problem& { return form.problem; }, form_);
+  const Eigen::Index first = asked.size() - joints_ - static_cast<Eigen::Index>(turning_.size());
+  for (std::size_t k = 0; k < turning_.size(); ++k) {
+    const int contact = turning_[k].contact;
+    asked.limits.push_back({.row = static_cast<int>(first) + static_cast<int>(k),
+                            .normal_row = cones != nullptr ? cones->normal_row[contact] : contact,
+                            .coefficient = turning_[k].limit});
+  }
 }
 
 const lcp::Problem& VelocityProblem::problem() const {
@@ -73,6 +109,12 @@ std::vector<Vec3> VelocityProblem::impulses(const ContactSet& contacts,
   return std::visit([&](const auto& form) { return contact_impulses(form, contacts, z); }, form_);
 }
 
+std::vector<Vec3> VelocityProblem::moments(const lcp::VectorRef& z) const {
+  const Eigen::Index rows = static_cast<Eigen::Index>(turning_.size());
+  return contact_moments(turning_, static_cast<std::size_t>(contacts_),
+                         z.segment(z.size() - joints_ - rows, rows));
+}
+
 void VelocityProblem::remember(const ContactSet& contacts, const lcp::VectorRef& z,
                                ContactMemory& memory) const {
   std::visit([&](const auto& form) { memory.add(form, contacts, z); }, form_);
@@ -85,7 +127,7 @@ int VelocityProblem::recall(const ContactSet& contacts, const ContactMemory& mem
 
 lcp::Vector VelocityProblem::closed_form() const {
   const lcp::Problem& asked = problem();
-  if (joints_ > 0) {
+  if (joints_ > 0 || !turning_.empty()) {
     return {};
   }
   if (contacts_ == 1 && asked.size() == 1) {

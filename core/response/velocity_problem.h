@@ -3,6 +3,7 @@
 #include <signorini/core/response/contact_memory.h>
 #include <signorini/core/response/friction_cones.h>
 #include <signorini/core/response/friction_pyramid.h>
+#include <signorini/core/response/turning_rows.h>
 
 #include <cstdint>
 #include <string_view>
@@ -27,7 +28,9 @@ enum class FrictionModel : std::uint8_t {
 class VelocityProblem {
  public:
   /// @param sides of the pyramid; see assemble_pyramid() and assemble_cones()
-  /// @param joints rows with these bodies' numbers, behind all others in every model
+  /// @param joints rows with these bodies' numbers, behind all others in every model; those of
+  /// rolling and spinning friction (turning_rows.h), with limits coupled to their normals, are
+  /// before them
   void assemble(FrictionModel model, const Bodies& bodies, const State& free_state,
                 const ContactSet& contacts, const lcp::VectorRef& allowance, int sides,
                 std::span<const JointRow> joints = {});
@@ -42,9 +45,12 @@ class VelocityProblem {
   /// On A, world axes, N s, one a contact.
   [[nodiscard]] std::vector<Vec3> impulses(const ContactSet& contacts,
                                            const lcp::VectorRef& z) const;
+  /// Of rolling and spinning friction, on A, world axes, N m s, one a contact.
+  [[nodiscard]] std::vector<Vec3> moments(const lcp::VectorRef& z) const;
   /// Adds to memory; see ContactMemory::add().
   void remember(const ContactSet& contacts, const lcp::VectorRef& z, ContactMemory& memory) const;
-  /// The solution of a single contact without joints where it has a closed form, else empty:
+  /// The solution of a single contact without joints and without rolling and spinning friction
+  /// where it has a closed form, else empty:
   /// without friction f = max(0, -q/A); with a cone or a box 0 where q_N >= 0, else -A^-1 q where
   /// that is within the bounds.
   [[nodiscard]] lcp::Vector closed_form() const;
@@ -52,7 +58,11 @@ class VelocityProblem {
   int recall(const ContactSet& contacts, const ContactMemory& memory, lcp::Vector& z) const;
 
  private:
+  [[nodiscard]] bool has_turning(int normal_row, const ConeProblem& cones) const;
+  void limit_turning();
+
   std::variant<PyramidProblem, ConeProblem> form_;
+  std::vector<TurningRow> turning_;  // rows before those of the joints
   Eigen::Index contacts_ = 0;
   Eigen::Index joints_ = 0;  // rows
 };

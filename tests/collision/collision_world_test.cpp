@@ -5,6 +5,7 @@
 #include "tests/lcp/allocation_count.h"
 
 #include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
 #include <set>
@@ -67,6 +68,27 @@ struct Heap {
     }
   }
 };
+
+TEST(CollisionWorld, TurnsTheFrictionDirectionWithItsCollider) {
+  const Bodies bodies{body_of(BodyKind::kFixed), body_of(BodyKind::kDynamic)};
+  State state{at(Vec3::Zero()), at(Vec3(0, 0, 0.5))};
+  state[1].q = Quat(Eigen::AngleAxisd(0.3, Vec3::UnitZ()));
+  const Pose turned{Vec3::Zero(), Quat(Eigen::AngleAxisd(0.4, Vec3::UnitZ()))};
+  Collider box = collider(1, kCube, {.friction = 0.2, .friction_ratio = 2.0}, turned);
+  box.friction_direction = Vec3::UnitX();
+  ContactSet found;
+  CollisionWorld(bodies, {collider(0, HalfSpace{}), box}, PairingRule::kMaximum)
+      .find(state, 0.01, found);
+  ASSERT_EQ(found.size(), 4U);
+  for (const Contact& contact : found) {
+    EXPECT_LT((contact.friction_direction - Vec3(std::cos(0.7), std::sin(0.7), 0.0)).norm(), 1e-15);
+  }
+  box.friction_direction.x() = kNaN;
+  EXPECT_NE(refusal([&] {
+              CollisionWorld(bodies, {box}, PairingRule::kMaximum);
+            }).find("friction_direction"),
+            std::string::npos);
+}
 
 TEST(CollisionWorld, FindsWhatEveryPairOfCollidersFinds) {
   const Heap heap(200);

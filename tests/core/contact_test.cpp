@@ -75,6 +75,13 @@ TEST(Contact, RefusesByContactAndField) {
   expect_refused([](Contact& c) { c.surface_b.direction.setZero(); }, {"surface_b.direction"});
   expect_refused([](Contact& c) { c.material.friction = -0.5; }, {"friction", "-0.5"});
   expect_refused([](Contact& c) { c.material.restitution = 1.5; }, {"restitution", "1.5"});
+  expect_refused([](Contact& c) { c.material.friction_ratio = 0.0; }, {"friction_ratio", "0"});
+  expect_refused([](Contact& c) { c.material.rolling_friction = -0.1; },
+                 {"rolling_friction", "-0.1"});
+  expect_refused([](Contact& c) { c.material.spinning_friction = kNaN; },
+                 {"spinning_friction", "nan"});
+  expect_refused([](Contact& c) { c.friction_direction.x() = kInfinity; },
+                 {"friction_direction", "inf"});
 }
 
 TEST(Material, RefusesByFieldAndValue) {
@@ -107,6 +114,20 @@ TEST(Material, PairsByEachRule) {
   expect(PairingRule::kMaximum, 0.8, 1.0);
   expect(PairingRule::kMean, 0.65, 0.6);
   EXPECT_THROW((void)pair(a, b, static_cast<PairingRule>(9)), std::invalid_argument);
+}
+
+TEST(Material, PairsFrictionAcrossByTheRuleAndTakesTheLargerLengths) {
+  const Material wood{.friction = 0.2, .friction_ratio = 2.5, .rolling_friction = 0.02};
+  const Material ground{.friction = 0.4, .spinning_friction = 0.01};
+  const Material least = pair(wood, ground, PairingRule::kMinimum);
+  EXPECT_EQ(least.friction, 0.2);
+  EXPECT_DOUBLE_EQ(least.friction_ratio, 0.4 / 0.2);
+  EXPECT_DOUBLE_EQ(pair(wood, ground, PairingRule::kMultiply).friction_ratio, 2.5);
+  for (const PairingRule rule : {PairingRule::kMultiply, PairingRule::kMean}) {
+    EXPECT_EQ(pair(ground, wood, rule).rolling_friction, 0.02);
+    EXPECT_EQ(pair(ground, wood, rule).spinning_friction, 0.01);
+  }
+  EXPECT_EQ(pair(wood, {.friction = 0.0}, PairingRule::kMinimum).friction_ratio, 1.0);
 }
 
 TEST(Motion, ConstantVelocityTurnsAboutTheWorldAxisAndKeepsItsBound) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
+#include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 
@@ -176,6 +178,175 @@ TEST_P(Model, WithoutFrictionTheModelsAreOne) {
     step(stepper, slope.state, report);
   }
   EXPECT_NEAR((slope.state[1].p / 2.0).dot(slope.down), 60 * kG * std::sin(0.3) / 240.0, 1e-9);
+}
+
+/// A ball of 2 kg and 0.5 m on a plane.
+struct Ball {
+  static constexpr double kMass = 2.0;
+  static constexpr double kRadius = 0.5;
+  PlaneContacts finder;
+  Bodies bodies{fixed_body(), ball_body(kMass, kRadius)};
+  State state{at(Vec3::Zero()), at(Vec3(0, 0, kRadius))};
+
+  explicit Ball(const Material& material)
+      : finder(Vec3::UnitZ(), {{TestBall{kRadius}, material}}) {}
+  void set(const Vec3& linear, const Vec3& angular) {
+    set_velocity(bodies[1], {linear, angular}, state[1]);
+  }
+  [[nodiscard]] Velocity motion() const { return velocity(bodies[1], state[1]); }
+};
+
+TEST_P(Model, ASpinningBallStopsAfterTwoFifthsOfR2WOverMuG) {
+  const double mu = 0.01;  // m
+  const double h = 1.0 / 240.0;
+  Ball ball({.friction = 0.3, .spinning_friction = mu});
+  ball.set(Vec3::Zero(), Vec3(0, 0, 3.0));
+  TimeStepper stepper(ball.bodies, ball.finder,
+                      {.step = h, .friction_model = GetParam(), .lcp = {.tolerance = 1e-12}});
+  const double slows = mu * kG / (0.4 * Ball::kRadius * Ball::kRadius);  // rad/s^2
+  const double stops = 3.0 / slows;
+  StepReport report;
+  for (int k = 1; k * h < stops + 0.1; ++k) {
+    step(stepper, ball.state, report);
+    EXPECT_NEAR(ball.motion().angular.z(), std::max(0.0, 3.0 - slows * k * h), 1e-9);
+    if (k == 1) {
+      ASSERT_EQ(report.moments.size(), 1U);
+      EXPECT_NEAR(report.moments[0].z(), -mu * Ball::kMass * kG * h, 1e-10);
+    }
+  }
+  EXPECT_LT(ball.motion().linear.norm(), 1e-12);
+}
+
+TEST_P(Model, ARollingBallIsSlowedByFiveSeventhsOfMuGOverR) {
+  const double mu = 0.02;  // m
+  const double h = 1.0 / 240.0;
+  const Vec3 heading(0.6, 0.8, 0.0);
+  Ball ball({.friction = 0.5, .rolling_friction = mu});
+  ball.set(2.0 * heading, Vec3::UnitZ().cross(2.0 / Ball::kRadius * heading));
+  TimeStepper stepper(ball.bodies, ball.finder,
+                      {.step = h, .friction_model = GetParam(), .lcp = {.tolerance = 1e-12}});
+  const double slows = 5.0 / 7.0 * mu * kG / Ball::kRadius;
+  StepReport report;
+  for (int k = 1; k * h < 2.0 / slows + 0.1; ++k) {
+    step(stepper, ball.state, report);
+    const Vec3 v = ball.motion().linear;
+    EXPECT_NEAR(v.dot(heading), std::max(0.0, 2.0 - slows * k * h), 1e-8);
+    EXPECT_LT(v.cross(heading).norm(), 1e-8);
+    EXPECT_LT(ball.motion().at(Vec3(0, 0, -Ball::kRadius)).norm(), 1e-8);  // rolls
+  }
+}
+
+TEST_P(Model, ABallRestsOnASlopeThatItsRollingFrictionHolds) {
+  for (const bool holds : {true, false}) {
+    const double angle = 2.0 * kDegree;
+    const double mu = Ball::kRadius * std::tan(angle) * (holds ? 1.02 : 0.5);  // m
+    Ball ball({.friction = 0.5, .rolling_friction = mu});
+    const double h = 1.0 / 60.0;
+    const Vec3 gravity = kG * Vec3(std::sin(angle), 0.0, -std::cos(angle));
+    TimeStepper stepper(
+        ball.bodies, ball.finder,
+        {.step = h, .gravity = gravity, .friction_model = GetParam(), .lcp = {.tolerance = 1e-12}});
+    StepReport report;
+    for (int k = 0; k < 60; ++k) {
+      step(stepper, ball.state, report);
+    }
+    const double pull = gravity.x() + mu / Ball::kRadius * gravity.z();
+    EXPECT_NEAR(ball.motion().linear.x(), holds ? 0.0 : 5.0 / 7.0 * pull * 60 * h, 1e-8);
+  }
+}
+
+/// A brick on the ground, pushed along x, whose friction direction is turned by `turned` from x.
+struct Anisotropic {
+  static constexpr double kAlong = 0.2;
+  static constexpr double kAcross = 0.5;
+  double turned;
+  Vec3 half = Vec3(0.5, 0.4, 0.1);
+
+  class Finder final : public ContactFinder {
+   public:
+    Finder(const Vec3& half, const Vec3& direction)
+        : plane_(Vec3::UnitZ(),
+                 {{TestBox{half}, {.friction = kAlong, .friction_ratio = kAcross / kAlong}}}),
+          direction_(direction) {}
+    void find(const State& state, double margin, ContactSet& contacts) override {
+      plane_.find(state, margin, contacts);
+      for (Contact& contact : contacts) {
+        contact.friction_direction = direction_;
+      }
+    }
+    std::optional<FirstContact> first_contact(std::span<const Motion* const> motions,
+                                              double duration) override {
+      return plane_.first_contact(motions, duration);
+    }
+
+   private:
+    PlaneContacts plane_;
+    Vec3 direction_;
+  };
+
+  /// The velocity after one step under a push (an acceleration), from rest.
+  [[nodiscard]] Vec3 pushed(FrictionModel model, double push, double h) const {
+    Finder finder(half, direction());
+    Bodies bodies{fixed_body(), box_body(2.0, half)};
+    State state{at(Vec3::Zero()), at(Vec3(0, 0, half.z()))};
+    TimeStepper stepper(bodies, finder,
+                        {.step = h,
+                         .gravity = Vec3(push, 0.0, -kG),
+                         .friction_model = model,
+                         .lcp = {.tolerance = 1e-12}});
+    StepReport report;
+    step(stepper, state, report);
+    return state[1].p / 2.0;
+  }
+  [[nodiscard]] Vec3 direction() const { return {std::cos(turned), std::sin(turned), 0.0}; }
+};
+
+// v = h a - h g (mu_1^2 v_1, mu_2^2 v_2)/|(mu_1 v_1, mu_2 v_2)| along the direction and across it.
+TEST(FrictionModels, ABrickPushedAcrossItsDirectionSlidesByTheLawOfTheEllipse) {
+  const Anisotropic brick{.turned = 45.0 * kDegree};
+  const double h = 1.0 / 60.0;
+  const double push = 0.6 * kG;
+  const Vec3 v = brick.pushed(FrictionModel::kCone, push, h);
+  const Vec3 along = brick.direction();
+  const Vec3 across = Vec3::UnitZ().cross(along);
+  const Eigen::Vector2d slip(v.dot(along), v.dot(across));
+  const Eigen::Vector2d mu(Anisotropic::kAlong, Anisotropic::kAcross);
+  const Eigen::Vector2d scaled = mu.cwiseProduct(slip);
+  const Eigen::Vector2d force = -kG * mu.cwiseProduct(scaled) / scaled.norm();
+  const Eigen::Vector2d pushing = push * Eigen::Vector2d(along.x(), across.x());
+  EXPECT_LT((slip - h * (pushing + force)).norm(), 1e-9);
+  EXPECT_GT(slip[0], -1.2 * slip[1]);  // it yields where friction is less
+  EXPECT_LT(slip[1], 0.0);
+}
+
+TEST_P(Model, AnisotropicFrictionHoldsEachWayByItsOwnMu) {
+  for (const bool across : {false, true}) {
+    const Anisotropic brick{.turned = across ? 90.0 * kDegree : 0.0};
+    const double mu = across ? Anisotropic::kAcross : Anisotropic::kAlong;
+    const double h = 1.0 / 60.0;
+    EXPECT_LT(brick.pushed(GetParam(), 0.98 * mu * kG, h).norm(), 1e-9);
+    const Vec3 slides = brick.pushed(GetParam(), 1.5 * mu * kG, h);
+    EXPECT_NEAR(slides.x(), 0.5 * mu * kG * h, 1e-8);
+    EXPECT_LT(std::abs(slides.y()), 1e-9);
+  }
+}
+
+TEST(FrictionModels, EveryPositionOfTheDialTakesTurningAndAnisotropicFriction) {
+  for (const char* position : {"preview", "game", "engineering", "reference"}) {
+    SCOPED_TRACE(position);
+    Ball ball({.friction = 0.5,
+               .friction_ratio = 0.5,
+               .rolling_friction = 0.02,
+               .spinning_friction = 0.01});
+    ball.set(Vec3(2.0, 0.0, 0.0), Vec3(0.0, 2.0 / Ball::kRadius, 1.0));
+    TimeStepper stepper(ball.bodies, ball.finder,
+                        {.step = 1.0 / 240.0, .accuracy = Accuracy::named(position)});
+    StepReport report;
+    step(stepper, ball.state, report);
+    EXPECT_EQ(report.rows, 6);
+    EXPECT_NE(report.islands.at(0).model.find("cone, box where"), std::string::npos);
+    EXPECT_NEAR(report.moments.at(0).z(), -0.01 * Ball::kMass * kG / 240.0, 1e-4);
+  }
 }
 
 TEST(FrictionModels, AnUnknownModelIsRefused) {
