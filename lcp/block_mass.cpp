@@ -37,9 +37,11 @@ int BlockMass::add_inverse(const MatrixRef& inverse_mass) {
     throw std::invalid_argument("BlockMass: inverse mass: its diagonal must be >= 0, got " +
                                 number_text(inverse_mass.diagonal().minCoeff()));
   }
-  Matrix symmetric = inverse_mass;
-  symmetric.triangularView<Eigen::StrictlyUpper>() = inverse_mass.transpose();
-  return add(symmetric, false);
+  const int block = add(inverse_mass, false);
+  Eigen::Map<Matrix> kept(values_.data() + blocks_.back().values, inverse_mass.rows(),
+                          inverse_mass.cols());
+  kept.triangularView<Eigen::StrictlyUpper>() = inverse_mass.transpose();
+  return block;
 }
 
 int BlockMass::add_mass(const MatrixRef& mass) {
@@ -48,7 +50,7 @@ int BlockMass::add_mass(const MatrixRef& mass) {
   if (factor.info() != Eigen::Success) {
     throw std::invalid_argument("BlockMass: mass: must be positive definite");
   }
-  return add(factor.matrixL(), true);
+  return add(Matrix(factor.matrixL()), true);
 }
 
 int BlockMass::add_factor(const MatrixRef& factor) {
@@ -60,10 +62,13 @@ int BlockMass::add_factor(const MatrixRef& factor) {
   return add(factor, true);
 }
 
-int BlockMass::add(const Matrix& values, bool is_factor) {
+int BlockMass::add(const MatrixRef& values, bool is_factor) {
   const int dimension = static_cast<int>(values.rows());
   blocks_.push_back({degrees_of_freedom_, dimension, static_cast<int>(values_.size()), is_factor});
-  values_.insert(values_.end(), values.data(), values.data() + values.size());
+  for (Index column = 0; column < values.cols(); ++column) {
+    const double* numbers = values.data() + column * values.outerStride();
+    values_.insert(values_.end(), numbers, numbers + dimension);
+  }
   degrees_of_freedom_ += dimension;
   return block_count() - 1;
 }

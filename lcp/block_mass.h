@@ -65,7 +65,7 @@ class BlockMass {
     int values;      // where the block's d x d numbers start, column-major
     bool is_factor;  // the numbers are L of M_k = L L^T, not W_k
   };
-  int add(const Matrix& values, bool is_factor);
+  int add(const MatrixRef& values, bool is_factor);
 
   std::vector<Block> blocks_;
   std::vector<double> values_;

@@ -19,22 +19,24 @@ int FactoredMatrix::add_row(double compliance) {
 }
 
 void FactoredMatrix::add_entry(int block, const VectorRef& values) {
-  const std::string where = "FactoredMatrix: entry of row " + std::to_string(rows() - 1);
   if (rows() == 0) {
     throw std::invalid_argument("FactoredMatrix: add_entry before the first add_row");
   }
+  const auto refuse = [&](const std::string& what) {
+    throw std::invalid_argument("FactoredMatrix: entry of row " + std::to_string(rows() - 1) +
+                                ": " + what);
+  };
   if (block < 0 || block >= mass.block_count()) {
-    throw std::invalid_argument(where + ": block " + std::to_string(block) + " is not one of the " +
-                                std::to_string(mass.block_count()) + " blocks");
+    refuse("block " + std::to_string(block) + " is not one of the " +
+           std::to_string(mass.block_count()) + " blocks");
   }
   if (values.size() != mass.dimension(block)) {
-    throw std::invalid_argument(where + ": " + std::to_string(values.size()) +
-                                " values for block " + std::to_string(block) + " of dimension " +
-                                std::to_string(mass.dimension(block)));
+    refuse(std::to_string(values.size()) + " values for block " + std::to_string(block) +
+           " of dimension " + std::to_string(mass.dimension(block)));
   }
   for (const Entry& entry : entries(rows() - 1)) {
     if (entry.block == block) {
-      throw std::invalid_argument(where + ": block " + std::to_string(block) + " given twice");
+      refuse("block " + std::to_string(block) + " given twice");
     }
   }
   entries_.push_back({block, static_cast<int>(values_.size())});

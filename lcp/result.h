@@ -53,4 +53,7 @@ struct Result {
   std::vector<Attempt> attempts;  ///< of a solver that tries others, in order; else empty
 };
 
+/// Makes it a result of n rows that was not run, z and w NaN; keeps the memory.
+void start_result(Index n, Result& result);
+
 }  // namespace signorini::lcp

@@ -7,6 +7,21 @@
 
 namespace signorini::lcp {
 
+void start_result(Index n, Result& result) {
+  result.status = Status::kNotRun;
+  result.solver.clear();
+  result.detail.clear();
+  result.z.setConstant(n, Certificate::kNaN);
+  result.w.setConstant(n, Certificate::kNaN);
+  result.certificate = {};
+  result.island_certificates.clear();
+  result.island_of_row.clear();
+  result.ray.resize(0);
+  result.ray_bound = 0.0;
+  result.statistics = {};
+  result.attempts.clear();
+}
+
 void SolverSettings::validate() const {
   if (!(tolerance > 0.0 && tolerance < 1.0)) {
     throw std::invalid_argument("settings: tolerance: must be in (0, 1), got " +
@@ -80,17 +95,8 @@ void Solver::solve(const Problem& problem, Result& result, const Vector* warm_st
     throw std::invalid_argument(std::string(name()) + ": " + why);
   }
   const Deadline deadline(settings().time_limit);
+  start_result(n, result);
   result.solver = name();
-  result.detail.clear();
-  result.z.setConstant(n, Certificate::kNaN);
-  result.w.setConstant(n, Certificate::kNaN);
-  result.certificate = {};
-  result.island_certificates.clear();
-  result.island_of_row.clear();
-  result.ray.resize(0);
-  result.ray_bound = 0.0;
-  result.statistics = {};
-  result.attempts.clear();
   if (std::string bad = find_bad_value(problem); !bad.empty()) {
     result.status = Status::kInvalidInput;
     result.detail = std::move(bad);
