@@ -3,6 +3,7 @@
 #include <signorini/lcp/friction_cone.h>
 
 #include "allocation_count.h"
+#include "definition_residual.h"
 
 #include <algorithm>
 #include <array>
@@ -160,10 +161,14 @@ TEST(AlartCurnier, CertifiesRandomAndRedundantContacts) {
 
 TEST(AlartCurnier, TakesBoundsFreeRowsAndCoupledLimitsBesideCones) {
   Problem problem = mixture();
-  EXPECT_EQ(solve(problem).status, Status::kSolved);
+  const Result bounded = solve(problem);
+  EXPECT_EQ(bounded.status, Status::kSolved);
+  EXPECT_LE(definition_residual(problem, bounded.z), 1e-8);
+  EXPECT_GE(definition_residual(problem, bounded.z + Vector::Constant(6, 1e-3)), 1e-5);
   problem.limits = {{.row = 5, .normal_row = 4, .coefficient = 0.3}};
   const Result result = solve(problem);
   EXPECT_EQ(result.status, Status::kSolved);
+  EXPECT_LE(definition_residual(problem, result.z), 1e-8);
   EXPECT_LE(std::abs(result.z[5]), 0.3 * result.z[4] + 1e-8);
   EXPECT_NEAR(result.w[3], 0.0, 1e-7);
 }

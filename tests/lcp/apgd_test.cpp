@@ -2,6 +2,7 @@
 #include <signorini/lcp/interior_point.h>
 
 #include "allocation_count.h"
+#include "definition_residual.h"
 
 #include <bench/contact_families.h>
 #include <cmath>
@@ -47,6 +48,7 @@ TEST(Apgd, HonoursBoxesAndFreeRows) {
   solver.solve(problem, result);
   ASSERT_TRUE(is_solved(result.status)) << to_string(result.status);
   EXPECT_NEAR(result.w[7], 0.0, 1e-7);
+  EXPECT_LE(definition_residual(problem, result.z), 1e-8);
   int at_upper = 0;
   for (Index i = 0; i < 60; ++i) {
     if (i != 7) {

@@ -2,6 +2,7 @@
 
 #include "allocation_count.h"
 #include "bench/contact_families.h"
+#include "definition_residual.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -151,6 +152,7 @@ TEST(AutoSolver, TakesConesFreeRowsBoundsAndCoupledLimits) {
   problem.lower = Vector{{0, 0, -kInfinity}};
   const Result limits = solve(problem);
   EXPECT_EQ(limits.status, Status::kSolved);
+  EXPECT_LE(definition_residual(problem, limits.z), 1e-8);
   EXPECT_NEAR(limits.z[1], -1.0, 1e-8);
   EXPECT_NEAR(limits.z[2], -2.0, 1e-8);
 }

@@ -1,6 +1,7 @@
 #include <signorini/lcp/block_pivoting.h>
 
 #include "allocation_count.h"
+#include "definition_residual.h"
 
 #include <bench/contact_families.h>
 #include <cmath>
@@ -107,6 +108,9 @@ TEST_P(BlockPivotingEnds, AsExpected) {
   EXPECT_EQ(result.status, GetParam().expected)
       << to_string(result.status) << ": " << result.detail;
   EXPECT_EQ(result.ray.size() > 0, GetParam().expected == Status::kInfeasible);
+  if (is_solved(result.status)) {
+    EXPECT_LE(definition_residual(GetParam().problem, result.z), 1e-8);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(BlockPivoting, BlockPivotingEnds, testing::ValuesIn(named_problems()),

@@ -3,6 +3,7 @@
 
 #include "allocation_count.h"
 #include "bench/contact_families.h"
+#include "definition_residual.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -207,6 +208,7 @@ TEST(ConeInteriorPoint, TakesBoundsAndFreeRowsBesideCones) {
     problem.friction_law = law;
     const Result result = solve(problem);
     EXPECT_EQ(result.status, Status::kSolved);
+    EXPECT_LE(definition_residual(problem, result.z), 1e-8);
     EXPECT_NEAR(result.w[3], 0.0, 1e-7);
     EXPECT_DOUBLE_EQ(result.z[7], 0.25);
   }

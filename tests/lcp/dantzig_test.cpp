@@ -1,5 +1,7 @@
 #include <signorini/lcp/dantzig.h>
 
+#include "definition_residual.h"
+
 #include <Eigen/Geometry>
 #include <bench/contact_families.h>
 #include <cmath>
@@ -98,6 +100,9 @@ class DantzigEnds : public testing::TestWithParam<Named> {};
 TEST_P(DantzigEnds, AsExpected) {
   const Result result = solve(GetParam().problem);
   EXPECT_EQ(result.status, GetParam().expected) << result.detail;
+  if (is_solved(result.status)) {
+    EXPECT_LE(definition_residual(GetParam().problem, result.z), 1e-8);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Dantzig, DantzigEnds, testing::ValuesIn(named_problems()),
@@ -220,6 +225,7 @@ TEST(Dantzig, CoupledLimitsAreThoseOfTheReturnedNormals) {
   for (const double mu : {0.0, 0.1, 0.5}) {
     const Result result = solve(sliding_block(mu));
     EXPECT_EQ(result.status, Status::kSolved) << mu << ": " << result.detail;
+    EXPECT_LE(definition_residual(sliding_block(mu), result.z), 1e-8) << mu;
     EXPECT_NE(result.detail.find("coupled limits: solved "), std::string::npos);
     for (int c = 0; c < 3; ++c) {
       EXPECT_LE(result.z.segment(3 * c + 1, 2).cwiseAbs().maxCoeff(), mu * result.z[3 * c] + 1e-9);
@@ -233,6 +239,7 @@ TEST(Dantzig, OneRoundOfCoupledLimitsIsNotCalledSolved) {
   const Result result = solve(sliding_block(0.5), settings);
   EXPECT_EQ(result.status, Status::kStalled);
   EXPECT_GT(result.certificate.unit_free_residual, 1e-8);
+  EXPECT_GT(definition_residual(sliding_block(0.5), result.z), 1e-8);
 }
 
 TEST(Dantzig, WarmStartFromASolutionDrivesNothing) {

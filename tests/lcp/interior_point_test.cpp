@@ -1,6 +1,7 @@
 #include <signorini/lcp/interior_point.h>
 
 #include "allocation_count.h"
+#include "definition_residual.h"
 
 #include <bench/contact_families.h>
 #include <cmath>
@@ -218,6 +219,7 @@ TEST(InteriorPoint, NonsymmetricMonotoneMatrices) {
       solver.solve(problem, result);
       EXPECT_EQ(result.status, Status::kSolved)
           << n << " rows, residual " << result.certificate.unit_free_residual;
+      EXPECT_LE(definition_residual(problem, result.z), 1e-8) << n;
     }
   }
 }
@@ -249,6 +251,7 @@ TEST(InteriorPoint, FreeRowsAloneAreALinearSystem) {
   solver.solve(problem, result);
   EXPECT_EQ(result.status, Status::kSolved);
   EXPECT_LE(result.w.cwiseAbs().maxCoeff(), 1e-8);
+  EXPECT_LE(definition_residual(problem, result.z), 1e-8);
 }
 
 TEST(InteriorPoint, FixedRowsStayWhereTheyAre) {

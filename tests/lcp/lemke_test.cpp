@@ -3,6 +3,8 @@
 #include <signorini/lcp/lemke.h>
 #include <signorini/lcp/scaled_lcp.h>
 
+#include "definition_residual.h"
+
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -499,6 +501,7 @@ TEST(Lemke, AFreeRowWithoutADiagonalTakesAnotherRowIntoTheBasis) {
   problem.lower = Vector{{-kInfinity, 0.0}};
   const Result result = solve(problem);
   EXPECT_EQ(result.status, Status::kSolved);
+  EXPECT_LE(definition_residual(problem, result.z), 1e-15);
   EXPECT_NEAR(result.z[1], 3.0, 1e-15);
   EXPECT_NEAR(result.z[0], 7.0, 1e-15);
 }
@@ -520,6 +523,7 @@ TEST(Lemke, CoupledLimitsAreSolvedExactly) {
       problem.limits = {{1, 0, 0.5}, {2, 0, 0.5}};
       const Result result = solve(problem);
       EXPECT_EQ(result.status, Status::kSolved) << slide << ", " << normal;
+      EXPECT_LE(definition_residual(problem, result.z), 1e-15) << slide << ", " << normal;
       EXPECT_LE(result.z.tail(2).cwiseAbs().maxCoeff(), 0.5 * result.z[0] + 1e-15);
       const Result warm = solve(problem, {}, &result.z);
       EXPECT_EQ(warm.status, Status::kSolved);

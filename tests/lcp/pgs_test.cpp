@@ -1,5 +1,7 @@
 #include <signorini/lcp/pgs.h>
 
+#include "definition_residual.h"
+
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
@@ -126,6 +128,7 @@ TEST(Pgs, SolvesBoxAndFreeRowsInEveryForm) {
        {factored, with_matrix(factored, A.form()), with_matrix(factored, to_dense(A))}) {
     const Result result = solve(problem);
     ASSERT_EQ(result.status, Status::kSolved) << result.detail;
+    EXPECT_LE(definition_residual(problem, result.z), 1e-8);
     for (Index i = 0; i < 24; ++i) {
       EXPECT_GE(result.z[i], problem.lower[i]);
       EXPECT_LE(result.z[i], problem.upper[i]);
@@ -177,6 +180,7 @@ TEST(Pgs, CoupledLimitsOnManyRowsSatisfyTheCoupledCertificate) {
     for (const Problem& form : {problem, with_matrix(problem, A.form())}) {
       const Result result = solve(form, limited(100000));
       ASSERT_EQ(result.status, Status::kSolved) << "seed " << seed << ": " << result.detail;
+      EXPECT_LE(definition_residual(form, result.z), 1e-8) << "seed " << seed;
       for (const CoupledLimit& limit : problem.limits) {  // -+ mu z_n of the row's last visit
         EXPECT_LE(std::abs(result.z[limit.row]), 0.3 * result.z[limit.normal_row] + 1e-7);
       }

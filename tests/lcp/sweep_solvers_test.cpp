@@ -3,6 +3,7 @@
 #include <signorini/lcp/psor.h>
 #include <signorini/lcp/symmetric_pgs.h>
 
+#include "definition_residual.h"
 #include "tests/lcp/allocation_count.h"
 #include "tests/lcp/sweep_problems.h"
 
@@ -97,6 +98,7 @@ TEST_P(SweepSolvers, CertifyRedundantBoundedAndCoupledProblemsInEveryForm) {
           << "seed " << spec.seed << ", form " << form.M.index() << ": " << to_string(result.status)
           << " " << result.detail << ", residual " << result.certificate.unit_free_residual;
       EXPECT_LE(result.certificate.unit_free_residual, 1e-8);
+      EXPECT_LE(definition_residual(form, result.z), 1e-8) << "seed " << spec.seed;
     }
   }
 }
