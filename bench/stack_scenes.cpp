@@ -1,5 +1,6 @@
 #include "bench/stack_scenes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -78,6 +79,37 @@ SteppedScene heavy_scene(double mass, double step, double seconds) {
       ground(fmt::format("1 kg under {:.0e} kg, {}", mass, step_text(step)), step, seconds);
   add_cube(1.0, Vec3(0.0, 0.0, 0.5), scene);
   add_cube(mass, Vec3(0.0, 0.0, 1.5), scene);
+  return scene;
+}
+
+SteppedScene slope_scene(double tan_angle, double step, double seconds) {
+  SteppedScene scene =
+      ground(fmt::format("slope of tan {:g}, {}", tan_angle, step_text(step)), step, seconds);
+  add_box(Vec3(0.5, 0.5, 0.1), 1.0, Vec3(0.0, 0.0, 0.1), kSurface, scene);
+  const double g = scene.gravity.norm();
+  const double angle = std::atan(tan_angle);
+  scene.gravity = g * Vec3(std::sin(angle), 0.0, -std::cos(angle));
+  const double pull = g * (std::sin(angle) - kSurface.friction * std::cos(angle));
+  scene.path = [a = std::max(pull, 0.0), step](double t) {
+    return Vec3(0.5 * a * t * (t + step), 0.0, 0.0);
+  };
+  return scene;
+}
+
+SteppedScene rolling_scene(double step, double seconds) {
+  constexpr double kRadius = 0.5;
+  constexpr double kSpeed = 5.0;  // m/s
+  SteppedScene scene = ground("sliding ball that rolls, " + step_text(step), step, seconds);
+  add_body(collision::Sphere{kRadius}, 1.0, 0.4 * kRadius * kRadius * Mat3::Identity(),
+           Vec3(0.0, 0.0, kRadius), kSurface, scene);
+  scene.state.back().p = Vec3(kSpeed, 0.0, 0.0);
+  const double brake = kSurface.friction * scene.gravity.norm();
+  const double rolls = 2.0 * kSpeed / (7.0 * brake);  // s
+  scene.path = [=](double t) {
+    const double slid = std::min(t, rolls);
+    return Vec3(kSpeed * slid - 0.5 * brake * slid * slid + 5.0 / 7.0 * kSpeed * (t - slid), 0.0,
+                0.0);
+  };
   return scene;
 }
 

@@ -3,6 +3,7 @@
 #include <signorini/collision/shape.h>
 #include <signorini/core/model/body.h>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@ struct SteppedScene {
   double step = 1.0 / 60.0;  ///< s
   double seconds = 1.0;      ///< how long it should stand
   int watched = 1;           ///< the body whose drift is measured: the top one
+  /// Where the watched body should be, from its start, after so many seconds; m. Empty: there.
+  std::function<Vec3(double time)> path = {};
 };
 
 /// The ground is a box of this half edge: a plane of Bullet's makes one contact with a box.
@@ -37,5 +40,11 @@ void add_box(const Vec3& half, double mass, const Vec3& position, const Material
 [[nodiscard]] SteppedScene pyramid_scene(int rows, double step, double seconds);
 /// A cube of 1 m and `mass` kg on one of 1 kg.
 [[nodiscard]] SteppedScene heavy_scene(double mass, double step, double seconds);
+/// A slab of 1 m on a slope (gravity is tilted), mu = 0.5: it stays where tan_angle <= mu, else
+/// x = a t (t + h) / 2 with a = g (sin - mu cos): the scheme's path (velocity, then position).
+[[nodiscard]] SteppedScene slope_scene(double tan_angle, double step, double seconds);
+/// A ball of 1 m pushed over the ground at 5 m/s without spin, mu = 0.5: it slides, and rolls from
+/// t = 2 v / (7 mu g) on at 5/7 v; the closed form, which a step meets to first order.
+[[nodiscard]] SteppedScene rolling_scene(double step, double seconds);
 
 }  // namespace signorini::bench

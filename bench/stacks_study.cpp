@@ -49,7 +49,9 @@ StacksRow run(const SteppedScene& scene, const Contestant& contestant, double se
       times.push_back(1e3 * (thread_seconds() - start));
     }
     const State poses = player->poses();
-    row.drift = std::max(row.drift, (poses[scene.watched].x - scene.state[scene.watched].x).norm());
+    const Vec3 path = scene.path ? scene.path((k + 1) * scene.step) : Vec3(Vec3::Zero());
+    const Vec3 moved = poses[scene.watched].x - scene.state[scene.watched].x;
+    row.drift = std::max(row.drift, (moved - path).norm());
     if (k % look == look - 1 || k == steps - 1) {
       row.penetration = std::max(row.penetration, deepest_overlap(poses, world));
     }
@@ -80,7 +82,9 @@ std::string StacksReport::to_csv() const {
 std::vector<SteppedScene> stacks_scenes() {
   return {stack_scene(100, 1.0 / 60.0, 60.0),  stack_scene(100, 1.0 / 240.0, 60.0),
           pyramid_scene(20, 1.0 / 60.0, 10.0), heavy_scene(1e3, 1.0 / 60.0, 10.0),
-          heavy_scene(1e6, 1.0 / 60.0, 10.0),  heavy_scene(1e9, 1.0 / 60.0, 10.0)};
+          heavy_scene(1e6, 1.0 / 60.0, 10.0),  heavy_scene(1e9, 1.0 / 60.0, 10.0),
+          slope_scene(0.45, 1.0 / 60.0, 2.0),  slope_scene(1.0, 1.0 / 60.0, 2.0),
+          rolling_scene(1.0 / 60.0, 2.0)};
 }
 
 StacksReport run_stacks_study(const StacksOptions& options, const std::vector<SteppedScene>& scenes,

@@ -22,7 +22,8 @@ struct StacksRow {
   double seconds = 0.0;       ///< simulated
   double milliseconds = 0.0;  ///< median CPU time of a step, collision included; ours over all
                               ///< steps, Bullet's over the first second, while its stack stands
-  double drift = 0.0;         ///< the largest distance of the watched body from its start, m
+  double drift = 0.0;         ///< the largest distance of the watched body from where it should be:
+                              ///< its start, or SteppedScene::path; m
   double penetration = 0.0;   ///< deepest overlap at 20 looks, ours and Bullet's by our collision
                               ///< detection, m
   double residual = 0.0;      ///< worst unit-free residual of all steps; NaN: not known
@@ -36,7 +37,7 @@ struct StacksReport {
   [[nodiscard]] std::string to_csv() const;
 };
 
-/// The scenes of the study: stacks, a pyramid, heavy on light.
+/// The scenes of the study: stacks, a pyramid, heavy on light, slopes, a ball that begins to roll.
 [[nodiscard]] std::vector<SteppedScene> stacks_scenes();
 
 /// Every contestant on every scene, one after the other.

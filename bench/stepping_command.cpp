@@ -52,10 +52,11 @@ struct SteppingCommand::Options {
 
 SteppingCommand::SteppingCommand(CLI::App& app) : options_(std::make_unique<Options>()) {
   Options& o = *options_;
-  stacks_ = app.add_subcommand(
-      "stacks",
-      "Stacks, a pyramid, heavy on light: step time, drift and penetration beside "
-      "Bullet's");
+  stacks_ =
+      app.add_subcommand("stacks",
+                         "Stacks, a pyramid, heavy on light, slopes, a rolling ball: error against "
+                         "step time for every "
+                         "position of the dial and Bullet with 10, 50, 200 and 1000 iterations");
   stacks_->add_option("--seconds", o.stacks.seconds, "Of each run of ours (default: the scene's)")
       ->check(CLI::PositiveNumber);
   stacks_->add_option("--bullet-seconds", o.stacks.bullet_seconds, "Of each run of Bullet's")

@@ -40,6 +40,28 @@ TEST(StacksStudy, EveryPositionOfTheDialSolvesAPyramid) {
   }
 }
 
+double drift_of(const SteppedScene& scene) {
+  TimeStepSettings settings;
+  settings.accuracy = Accuracy::engineering();
+  std::ostringstream out;
+  const StacksReport report =
+      run_stacks_study({.seconds = 1.0}, {scene}, {our_stepper("ours", settings)}, out);
+  EXPECT_TRUE(report.passed()) << out.str();
+  return report.rows.at(0).drift;
+}
+
+TEST(StacksStudy, ASlabStaysOrSlidesAndABallRollsAsTheyShould) {
+  EXPECT_LT(drift_of(slope_scene(0.45, 1.0 / 60.0, 1.0)), 1e-8);
+  EXPECT_LT(drift_of(slope_scene(1.0, 1.0 / 60.0, 1.0)), 1e-7);
+  const double coarse = drift_of(rolling_scene(1.0 / 60.0, 1.0));
+  const double fine = drift_of(rolling_scene(1.0 / 240.0, 1.0));
+  EXPECT_LT(coarse, 0.05);  // m, of 3.8: first order
+  EXPECT_LT(fine, 0.5 * coarse);
+  SteppedScene elsewhere = slope_scene(1.0, 1.0 / 60.0, 1.0);
+  elsewhere.path = {};
+  EXPECT_GT(drift_of(elsewhere), 1.0);  // it does slide
+}
+
 /// The first and the last value of every axis up to a mass ratio of 1e4, stacks up to 30.
 std::vector<ExtremeCell> fast_sample() {
   std::vector<ExtremeCell> all = extreme_cells();
