@@ -17,7 +17,7 @@ ConstraintSolver::ConstraintSolver(const Settings& settings)
 
 void ConstraintSolver::prepareSolve(int body_count, int manifold_count) {
   btSequentialImpulseConstraintSolver::prepareSolve(body_count, manifold_count);
-  step_ = {};
+  step_.clear();
   in_step_ = true;
 }
 
@@ -38,7 +38,7 @@ btScalar ConstraintSolver::solveGroup(btCollisionObject** bodies, int body_count
                                       btDispatcher* dispatcher) {
   const lcp::Deadline clock(std::numeric_limits<double>::infinity());
   if (!in_step_) {
-    step_ = {};
+    step_.clear();
   }
   const std::size_t first = step_.islands.size();
   warm_ = (info.m_solverMode & SOLVER_USE_WARMSTARTING) != 0;

@@ -96,7 +96,7 @@ ContactSolver::ContactSolver(const Settings& settings)
 
 bool ContactSolver::is_still_solved(const lcp::Problem& problem, const lcp::Vector& z,
                                     lcp::Result& result) {
-  result = {};
+  lcp::start_result(problem.size(), result);
   if (!z.allFinite() || !problem.q.allFinite()) {
     return false;
   }
@@ -231,7 +231,7 @@ Route ContactSolver::solve(lcp::Problem& problem, const lcp::Vector* warm_start,
   Route route = Route::kUnchanged;
   if (warm_start == nullptr || !is_still_solved(problem, *warm_start, result)) {
     if (warm_start == nullptr) {
-      result = {};
+      lcp::start_result(problem.size(), result);
     }
     route = has_friction ? Route::kSticking : Route::kBounds;
     if (!has_friction || warm_start == nullptr || !has_slip(problem, *warm_start)) {

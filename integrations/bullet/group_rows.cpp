@@ -348,10 +348,12 @@ void GroupRows::finish(IslandProblem& out) {
   const auto copy = [](const std::vector<double>& from, lcp::Vector& to) {
     to = lcp::Vector::Map(from.data(), static_cast<lcp::Index>(from.size()));
   };
-  copy(q_, out.problem.q);
-  copy(lower_, out.problem.lower);
-  copy(upper_, out.problem.upper);
-  copy(warm_, out.warm_start);
+  if (!out.rows.empty()) {  // else there is nothing to solve, and a push has often no rows
+    copy(q_, out.problem.q);
+    copy(lower_, out.problem.lower);
+    copy(upper_, out.problem.upper);
+    copy(warm_, out.warm_start);
+  }
   for (const int body : touched_) {
     bodies_[body].block = -1;
   }

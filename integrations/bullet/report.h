@@ -37,6 +37,11 @@ struct StepReport {
 
   /// False if any island was not.
   [[nodiscard]] bool is_solved() const;
+  /// Nothing done yet; keeps the memory.
+  void clear() {
+    islands.clear();
+    seconds = 0.0;
+  }
 };
 
 /// Sums since the solver was made, or reset().

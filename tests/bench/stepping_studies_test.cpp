@@ -44,8 +44,10 @@ double drift_of(const SteppedScene& scene) {
   TimeStepSettings settings;
   settings.accuracy = Accuracy::engineering();
   std::ostringstream out;
+  StacksOptions options;
+  options.seconds = 1.0;
   const StacksReport report =
-      run_stacks_study({.seconds = 1.0}, {scene}, {our_stepper("ours", settings)}, out);
+      run_stacks_study(options, {scene}, {our_stepper("ours", settings)}, out);
   EXPECT_TRUE(report.passed()) << out.str();
   return report.rows.at(0).drift;
 }

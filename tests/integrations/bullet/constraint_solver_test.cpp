@@ -3,6 +3,8 @@
 #include <signorini/integrations/bullet/example_scenes/drop_in_run.h>
 #include <signorini/integrations/bullet/example_scenes/example_scenes.h>
 
+#include "tests/lcp/allocation_count.h"
+
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -91,6 +93,33 @@ class World {
   std::vector<std::unique_ptr<btRigidBody>> bodies_;
   std::vector<std::unique_ptr<btTypedConstraint>> joints_;
 };
+
+/// Counts what solveGroup() allocates, Bullet's set-up included.
+class CountingSolver final : public ConstraintSolver {
+ public:
+  btScalar solveGroup(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
+                      int manifold_count, btTypedConstraint** joints, int joint_count,
+                      const btContactSolverInfo& info, btIDebugDraw* debug_draw,
+                      btDispatcher* dispatcher) override {
+    const lcp::AllocationCount here;
+    ConstraintSolver::solveGroup(bodies, body_count, manifolds, manifold_count, joints, joint_count,
+                                 info, debug_draw, dispatcher);
+    allocations += here.count();
+    return btScalar(0);
+  }
+  long allocations = 0;
+};
+
+TEST(BulletConstraintSolver, AStackAtRestAllocatesNothing) {
+  CountingSolver solver;
+  ExampleScene scene("stack", solver);
+  for (int i = 0; i < 120; ++i) scene.step();
+  EXPECT_GT(solver.allocations, 0);
+  solver.allocations = 0;
+  for (int i = 0; i < 60; ++i) scene.step();
+  EXPECT_EQ(solver.allocations, 0);
+  EXPECT_EQ(solver.counters().not_solved(), 0);
+}
 
 TEST(BulletConstraintSolver, VehicleLandsWithItsJointsAsInBulletsOwn) {
   const auto most = [](const DropInRun& run) { return *std::ranges::max_element(run.joint_error); };
