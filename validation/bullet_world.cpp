@@ -203,6 +203,8 @@ bool BulletWorld::set_pair_material(btManifoldPoint& point, const btCollisionObj
   const Material material = pair(first->material, second->material, stepping_scene->rule);
   point.m_combinedFriction = material.friction;
   point.m_combinedRestitution = material.restitution;
+  point.m_combinedRollingFriction = material.rolling_friction;
+  point.m_combinedSpinningFriction = material.spinning_friction;
   return true;
 }
 

@@ -21,6 +21,20 @@ void require(bool good, const Scene& scene, const std::string& what) {
   if (!good) throw InputError(scene.source + ": " + what);
 }
 
+std::string text_of(const Material& material) {
+  std::string text =
+      fmt::format("friction {}, restitution {}", material.friction, material.restitution);
+  if (material.friction_ratio != 1.0) {
+    text += fmt::format(", friction {} across fdir1 (Bullet: {} in every direction)",
+                        material.friction * material.friction_ratio, material.friction);
+  }
+  if (material.resists_turning()) {
+    text += fmt::format(", rolling friction {} m, spinning friction {} m",
+                        material.rolling_friction, material.spinning_friction);
+  }
+  return text;
+}
+
 }  // namespace
 
 long Scene::step_count() const {
@@ -59,22 +73,21 @@ std::vector<std::string> describe_pairs(const Scene& scene) {
     std::string first;
     int count = 0;
   };
-  std::map<std::pair<double, double>, Use> uses;
+  std::map<std::string, Use> uses;
   for (std::size_t i = 0; i < scene.colliders.size(); ++i) {
     for (std::size_t j = i + 1; j < scene.colliders.size(); ++j) {
       const collision::Collider& a = scene.colliders[i];
       const collision::Collider& b = scene.colliders[j];
       if (!can_touch(scene, a, b)) continue;
       const Material material = pair(a.material, b.material, scene.rule);
-      Use& use = uses[{material.friction, material.restitution}];
+      Use& use = uses[text_of(material)];
       if (use.count++ == 0) use.first = a.name + " / " + b.name;
     }
   }
   std::vector<std::string> lines;
   for (const auto& [values, use] : uses) {
     const std::string more = use.count > 1 ? fmt::format(", and {} more pairs", use.count - 1) : "";
-    lines.push_back(fmt::format("pair friction {}, restitution {} ({}{})", values.first,
-                                values.second, use.first, more));
+    lines.push_back(fmt::format("pair {} ({}{})", values, use.first, more));
   }
   return lines;
 }

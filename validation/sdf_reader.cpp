@@ -15,6 +15,7 @@
 #include <fstream>
 #include <map>
 #include <mutex>
+#include <numbers>
 #include <regex>
 #include <sdf/sdf.hh>
 #include <set>
@@ -331,6 +332,9 @@ class SceneBuilder {
     collider.body = static_cast<int>(scene_.bodies.size());
     collider.name = several ? body.name + "/" + collision.Name() : body.name;
     collider.material = material(*collision.Element(), link_name);
+    if (collider.material.friction_ratio != 1.0) {
+      collider.friction_direction = friction_direction(*collision.Element());
+    }
     collider.filter = filter(*collision.Element());
     ShapeUse use;
     use.is_dynamic = body.is_dynamic();
@@ -363,12 +367,34 @@ class SceneBuilder {
     if (const auto friction = surface->FindElement("friction"); friction != nullptr) {
       if (const auto ode = friction->FindElement("ode"); ode != nullptr) {
         result.friction = ode->Get<double>("mu", 1.0).first;
+        if (is_anisotropic(*ode)) {
+          result.friction_ratio = ode->Get<double>("mu2", 1.0).first / result.friction;
+        }
+      }
+      if (const auto bullet = friction->FindElement("bullet"); bullet != nullptr) {
+        result.rolling_friction = bullet->Get<double>("rolling_friction", 0.0).first;
+      }
+      if (const auto torsional = friction->FindElement("torsional"); torsional != nullptr) {
+        result.spinning_friction = spinning_friction(*torsional);
       }
     }
     if (const auto bounce = surface->FindElement("bounce"); bounce != nullptr) {
       result.restitution = bounce->Get<double>("restitution_coefficient", 0.0).first;
     }
     return result;
+  }
+
+  /// A patch of radius a under an even pressure falling to its rim: 3 pi/16 a mu (SDFormat's).
+  static double spinning_friction(const sdf::Element& torsional) {
+    if (!torsional.Get<bool>("use_patch_radius", true).first) return 0.0;  // said by the survey
+    return 3.0 * std::numbers::pi / 16.0 * torsional.Get<double>("coefficient", 1.0).first *
+           torsional.Get<double>("patch_radius", 0.0).first;
+  }
+
+  /// @pre is_anisotropic() of its surface
+  static Vec3 friction_direction(sdf::Element& collision) {
+    const auto ode = collision.FindElement("surface")->FindElement("friction")->FindElement("ode");
+    return vector(ode->Get<ignition::math::Vector3d>("fdir1"));
   }
 
   Scene& scene_;

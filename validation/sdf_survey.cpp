@@ -47,10 +47,22 @@ constexpr std::array<std::string_view, 14> kStructure = {
     "physics", "friction", "inertial", "joint", "axis",      "limit",   "dynamics"};
 
 /// Used by the reader, or without meaning for a single run.
-constexpr std::array<std::string_view, 15> kUsed = {
-    "pose", "static",   "gravity", "max_step_size",    "self_collide",
-    "mu",   "mu2",      "mass",    "inertia",          "restitution_coefficient",
-    "name", "geometry", "density", "real_time_factor", "allow_auto_disable"};
+constexpr std::array<std::string_view, 16> kUsed = {"pose",
+                                                    "static",
+                                                    "gravity",
+                                                    "max_step_size",
+                                                    "self_collide",
+                                                    "mu",
+                                                    "mu2",
+                                                    "fdir1",
+                                                    "mass",
+                                                    "inertia",
+                                                    "restitution_coefficient",
+                                                    "name",
+                                                    "geometry",
+                                                    "density",
+                                                    "real_time_factor",
+                                                    "allow_auto_disable"};
 
 /// Of joints: read by sdf_joints.h, which says what it leaves out.
 constexpr std::array<std::string_view, 7> kUsedOfJoints = {
@@ -69,6 +81,15 @@ std::string parent_name(const sdf::Element& element) {
 bool has_default_value(const sdf::Element& element) {
   const sdf::ParamPtr value = element.GetValue();
   return value == nullptr || value->GetAsString() == value->GetDefaultAsString();
+}
+
+/// Read, though what they are in is not.
+bool is_used_below_an_unused(const sdf::Element& element) {
+  const std::string& name = element.GetName();
+  const std::string parent = parent_name(element);
+  return name == "collide_bitmask" || (name == "rolling_friction" && parent == "bullet") ||
+         (parent == "torsional" && (name == "coefficient" || name == "patch_radius" ||
+                                    (name == "use_patch_radius" && element.Get<bool>())));
 }
 
 /// "surface/contact/ode/kp": from the nearest named element down.
@@ -139,7 +160,7 @@ void SdfSurvey::walk_children(const sdf::ElementPtr& element) {
 void SdfSurvey::mention_ignored(const sdf::ElementPtr& element) {
   if (element->GetFirstElement() == nullptr) {
     if (element->GetValue() == nullptr || has_default_value(*element)) return;
-    if (element->GetName() == "collide_bitmask") return;  // used
+    if (is_used_below_an_unused(*element)) return;
     Mention& mention = ignored_physics_[path_of(*element)];
     if (mention.count++ == 0) mention.first = locate(*element);
     return;
@@ -197,13 +218,21 @@ void SdfSurvey::check_inertial(const sdf::ElementPtr& inertial) const {
   }
 }
 
+bool is_anisotropic(const sdf::Element& ode) {
+  const double mu = ode.Get<double>("mu", 1.0).first;
+  const double mu2 = ode.Get<double>("mu2", 1.0).first;
+  const auto direction = ode.Get<ignition::math::Vector3d>("fdir1", {}).first;
+  return mu != mu2 && mu > 0.0 && mu2 > 0.0 && direction.Length() > 0.0;
+}
+
 void SdfSurvey::check_friction(const sdf::ElementPtr& ode) {
   const double mu = ode->Get<double>("mu", 1.0).first;
   const double mu2 = ode->Get<double>("mu2", 1.0).first;
-  if (mu == mu2) return;
+  if (mu == mu2 || is_anisotropic(*ode)) return;
   Mention& mention = ignored_physics_[fmt::format(
-      "surface/friction/ode/mu2 = {} beside mu = {} (friction is isotropic, mu)", text(mu2),
-      text(mu))];
+      "surface/friction/ode/mu2 = {} beside mu = {} (without fdir1, or with a 0, friction is "
+      "isotropic, mu)",
+      text(mu2), text(mu))];
   if (mention.count++ == 0) mention.first = locate(*ode);
 }
 

@@ -56,4 +56,8 @@ class SdfSurvey {
   std::vector<std::string> links_with_skips_;  ///< as located
 };
 
+/// Whether a <friction><ode> has two coefficients, both > 0, and the direction <fdir1> of the
+/// first.
+[[nodiscard]] bool is_anisotropic(const sdf::Element& ode);
+
 }  // namespace signorini::validation

@@ -95,6 +95,34 @@ TEST(SdfReader, ReadsGravityStepAndSurfaces) {
   EXPECT_FALSE(mentions(scene, "ignored physics"));
 }
 
+TEST(SdfReader, ReadsAnisotropicRollingAndSpinningFriction) {
+  const Scene scene = read(
+      box_model("",
+                "<surface><friction><ode><mu>0.2</mu><mu2>0.5</mu2><fdir1>0 1 0</fdir1></ode>"
+                "<bullet><rolling_friction>0.02</rolling_friction></bullet>"
+                "<torsional><coefficient>0.8</coefficient><use_patch_radius>true</use_patch_radius>"
+                "<patch_radius>0.1</patch_radius></torsional></friction></surface>"));
+  const collision::Collider& box = scene.colliders[0];
+  EXPECT_EQ(box.material.friction, 0.2);
+  EXPECT_DOUBLE_EQ(box.material.friction_ratio, 2.5);
+  EXPECT_EQ(box.friction_direction, Vec3(0.0, 1.0, 0.0));
+  EXPECT_EQ(box.material.rolling_friction, 0.02);
+  EXPECT_DOUBLE_EQ(box.material.spinning_friction, 3.0 * std::numbers::pi / 16.0 * 0.8 * 0.1);
+  EXPECT_FALSE(mentions(scene, "ignored physics"));
+}
+
+TEST(SdfReader, SaysWhichFrictionItDoesNotTake) {
+  const Scene scene = read(box_model(
+      "",
+      "<surface><friction><ode><mu>0.2</mu><mu2>0</mu2><fdir1>0 1 0</fdir1></ode>"
+      "<torsional><coefficient>0.8</coefficient><use_patch_radius>false</use_patch_radius>"
+      "<surface_radius>0.1</surface_radius></torsional></friction></surface>"));
+  EXPECT_EQ(scene.colliders[0].material.friction_ratio, 1.0);
+  EXPECT_EQ(scene.colliders[0].material.spinning_friction, 0.0);
+  EXPECT_TRUE(mentions(scene, "mu2 = 0 beside mu = 0.2"));
+  EXPECT_TRUE(mentions(scene, "use_patch_radius"));
+}
+
 TEST(SdfReader, LinksOfOneModelCollideOnlyIfTheySaySo) {
   const auto two_links = [](const std::string& flag) {
     return read("<model name=\"m\">" + flag + "<link name=\"a\"/><link name=\"b\"/></model>");
