@@ -438,8 +438,13 @@ sdf::SDFPtr parse(const std::string& text, const std::string& file, SceneFormat 
   const sdf::ParserConfig config;
   // An SDF file is read from disk so that its relative <include> paths hold.
   const bool from_file = !file.empty() && format == SceneFormat::kSdf;
-  const bool good = from_file ? sdf::readFile(file, config, document, errors)
-                              : sdf::readString(text, config, document, errors);
+  bool good = false;
+  try {
+    good = from_file ? sdf::readFile(file, config, document, errors)
+                     : sdf::readString(text, config, document, errors);
+  } catch (const std::exception& error) {  // a version that is no number
+    throw InputError(fmt::format("{}: libsdformat: {}", source, error.what()));
+  }
   if (!good || !errors.empty()) fail(source, errors, console);
   return document;
 }

@@ -265,6 +265,10 @@ TEST(SdfReader, MalformedXmlNamesTheLine) {
   EXPECT_NAMES(refusal(""), "not well-formed XML");
 }
 
+TEST(SdfReader, AVersionThatIsNoNumberIsRefused) {
+  EXPECT_NAMES(refusal("<sdf version='1.x9'><world name='w'/></sdf>"), "test.sdf: libsdformat");
+}
+
 TEST(SdfReader, MissingFileIsNamed) {
   try {
     (void)read_scene_file("/no/such/scene.sdf");
