@@ -12,9 +12,9 @@ using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
 /// -1 for bodies without a row, 0 for the others.
-std::vector<int> bodies_with_rows(const Bodies& bodies, const ContactSet& contacts,
-                                  const BodyPairs& joined) {
-  std::vector<int> has_row(bodies.size(), -1);
+void mark_bodies_with_rows(const Bodies& bodies, const ContactSet& contacts,
+                           const BodyPairs& joined, std::vector<int>& has_row) {
+  has_row.assign(bodies.size(), -1);
   const auto mark = [&](int body) {
     if (bodies[body].is_dynamic()) {
       has_row[body] = 0;
@@ -28,7 +28,6 @@ std::vector<int> bodies_with_rows(const Bodies& bodies, const ContactSet& contac
     mark(a);
     mark(b);
   }
-  return has_row;
 }
 
 /// blockdiag(I / m, J^-1).
@@ -49,12 +48,17 @@ int find_root(std::vector<int>& parent, int i) {
 
 }  // namespace
 
-std::vector<Velocity> velocities_of(const Bodies& bodies, const State& state) {
-  std::vector<Velocity> velocities;
+void velocities_of(const Bodies& bodies, const State& state, std::vector<Velocity>& velocities) {
+  velocities.clear();
   velocities.reserve(bodies.size());
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     velocities.push_back(velocity(bodies[k], state[k]));
   }
+}
+
+std::vector<Velocity> velocities_of(const Bodies& bodies, const State& state) {
+  std::vector<Velocity> velocities;
+  velocities_of(bodies, state, velocities);
   return velocities;
 }
 
@@ -87,6 +91,15 @@ lcp::Vector gap_velocities(const Bodies& bodies, const State& state, const Conta
   return d_dot;
 }
 
+void gap_velocities(const std::vector<Velocity>& velocities, const State& state,
+                    const ContactSet& contacts, std::vector<double>& d_dot) {
+  d_dot.clear();
+  d_dot.reserve(contacts.size());
+  for (const Contact& contact : contacts) {
+    d_dot.push_back(gap_velocity(velocities, state, contact));
+  }
+}
+
 void check_dynamic(const Bodies& bodies, const ContactSet& contacts) {
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const Contact& contact = contacts[i];
@@ -102,7 +115,7 @@ void start_rows(const Bodies& bodies, const State& state, const ContactSet& cont
                 NormalRows& rows, const BodyPairs& joined) {
   check_dynamic(bodies, contacts);
   rows.A.clear();
-  rows.block_of_body = bodies_with_rows(bodies, contacts, joined);
+  mark_bodies_with_rows(bodies, contacts, joined, rows.block_of_body);
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     if (rows.block_of_body[k] == 0) {
       rows.block_of_body[k] = rows.A.mass.add_inverse(inverse_mass_block(bodies[k], state[k]));
@@ -146,39 +159,37 @@ void apply_impulses(const Bodies& bodies, const ContactSet& contacts, const lcp:
   }
 }
 
-BodyPairs body_pairs(const ContactSet& contacts) {
-  BodyPairs pairs;
-  pairs.reserve(contacts.size());
+void add_body_pairs(const ContactSet& contacts, BodyPairs& pairs) {
   for (const Contact& contact : contacts) {
     pairs.emplace_back(contact.body_a, contact.body_b);
   }
-  return pairs;
 }
 
 std::vector<int> connected_sets(const Bodies& bodies, const ContactSet& contacts) {
-  return linked_sets(bodies, body_pairs(contacts));
+  BodyPairs pairs;
+  add_body_pairs(contacts, pairs);
+  return LinkedSets().find(bodies, pairs);
 }
 
-std::vector<int> linked_sets(const Bodies& bodies, const BodyPairs& links) {
-  std::vector<int> parent(bodies.size());
-  std::iota(parent.begin(), parent.end(), 0);
+const std::vector<int>& LinkedSets::find(const Bodies& bodies, const BodyPairs& links) {
+  parent_.resize(bodies.size());
+  std::iota(parent_.begin(), parent_.end(), 0);
   for (const auto& [a, b] : links) {
     if (bodies[a].is_dynamic() && bodies[b].is_dynamic()) {
-      parent[find_root(parent, a)] = find_root(parent, b);
+      parent_[find_root(parent_, a)] = find_root(parent_, b);
     }
   }
-  std::vector<int> number_of_root(bodies.size(), -1);
-  std::vector<int> set_of_link;
-  set_of_link.reserve(links.size());
+  number_of_root_.assign(bodies.size(), -1);
+  set_of_link_.clear();
   int sets = 0;
   for (const auto& [a, b] : links) {
-    int& number = number_of_root[find_root(parent, bodies[a].is_dynamic() ? a : b)];
+    int& number = number_of_root_[find_root(parent_, bodies[a].is_dynamic() ? a : b)];
     if (number < 0) {
       number = sets++;
     }
-    set_of_link.push_back(number);
+    set_of_link_.push_back(number);
   }
-  return set_of_link;
+  return set_of_link_;
 }
 
 }  // namespace signorini

@@ -21,7 +21,10 @@ struct NormalRows {
   std::vector<int> block_of_body;  ///< -1 for bodies without a row
 };
 
+// Functions that write into a vector of the caller's allocate nothing once its capacity suffices.
+
 /// velocity() of every body: J^-1 is worth computing once a body, not once a contact.
+void velocities_of(const Bodies& bodies, const State& state, std::vector<Velocity>& velocities);
 [[nodiscard]] std::vector<Velocity> velocities_of(const Bodies& bodies, const State& state);
 
 /// d' = N.(u_A - u_B) of one contact, with N as it is now; m/s, < 0 approaching.
@@ -31,6 +34,9 @@ struct NormalRows {
 /// The same for every contact of a set.
 [[nodiscard]] lcp::Vector gap_velocities(const Bodies& bodies, const State& state,
                                          const ContactSet& contacts);
+/// @param velocities of the bodies
+void gap_velocities(const std::vector<Velocity>& velocities, const State& state,
+                    const ContactSet& contacts, std::vector<double>& d_dot);
 
 /// @throws std::invalid_argument naming the contact if neither of its bodies is dynamic.
 void check_dynamic(const Bodies& bodies, const ContactSet& contacts);
@@ -63,10 +69,19 @@ void apply_impulses(const Bodies& bodies, const ContactSet& contacts, const lcp:
 /// The connected sets of contacts: two contacts belong together if they share a dynamic body.
 /// @return the set's number of each contact, numbered in the order of their first contact.
 [[nodiscard]] std::vector<int> connected_sets(const Bodies& bodies, const ContactSet& contacts);
-/// The same of any links between bodies, each with a dynamic body.
-[[nodiscard]] std::vector<int> linked_sets(const Bodies& bodies, const BodyPairs& links);
+/// The same of any links between bodies, each with a dynamic body; keeps its memory.
+class LinkedSets {
+ public:
+  /// Valid until the next call.
+  [[nodiscard]] const std::vector<int>& find(const Bodies& bodies, const BodyPairs& links);
 
-/// The two bodies of every contact.
-[[nodiscard]] BodyPairs body_pairs(const ContactSet& contacts);
+ private:
+  std::vector<int> parent_;
+  std::vector<int> number_of_root_;
+  std::vector<int> set_of_link_;
+};
+
+/// Adds the two bodies of every contact.
+void add_body_pairs(const ContactSet& contacts, BodyPairs& pairs);
 
 }  // namespace signorini

@@ -4,12 +4,11 @@
 #include <algorithm>
 
 namespace signorini {
-namespace {
 
-/// Fills all but the members and the joints, which it renumbers. @param local of every body of the
-/// scene: scratch
-void fill(const Bodies& bodies, const State& state, const ContactSet& contacts,
-          const lcp::VectorRef& allowance, std::vector<int>& local, ContactIsland& island) {
+/// Fills all but the members and the joints, which it renumbers.
+void ContactIslands::fill(const Bodies& bodies, const State& state, const ContactSet& contacts,
+                          std::span<const double> allowance, ContactIsland& island) {
+  island.body.clear();
   for (const int i : island.members) {
     island.body.push_back(contacts[i].body_a);
     island.body.push_back(contacts[i].body_b);
@@ -20,54 +19,59 @@ void fill(const Bodies& bodies, const State& state, const ContactSet& contacts,
   }
   std::sort(island.body.begin(), island.body.end());
   island.body.erase(std::unique(island.body.begin(), island.body.end()), island.body.end());
+  island.bodies.resize(island.body.size());
+  island.state.clear();
   for (std::size_t k = 0; k < island.body.size(); ++k) {
     const int body = island.body[k];
-    local[body] = static_cast<int>(k);
-    island.bodies.push_back(bodies[body]);
+    local_[body] = static_cast<int>(k);
+    island.bodies[k] = bodies[body];
     island.state.push_back(state[body]);
   }
+  island.contacts.clear();
   island.allowance.resize(static_cast<lcp::Index>(island.members.size()));
   for (std::size_t j = 0; j < island.members.size(); ++j) {
     Contact contact = contacts[island.members[j]];
-    contact.body_a = local[contact.body_a];
-    contact.body_b = local[contact.body_b];
+    contact.body_a = local_[contact.body_a];
+    contact.body_b = local_[contact.body_b];
     island.contacts.push_back(contact);
     island.allowance[static_cast<lcp::Index>(j)] = allowance[island.members[j]];
   }
   for (JointRow& row : island.joints) {
-    row.body_a = local[row.body_a];
-    row.body_b = local[row.body_b];
+    row.body_a = local_[row.body_a];
+    row.body_b = local_[row.body_b];
   }
 }
 
-}  // namespace
-
-std::vector<ContactIsland> contact_islands(const Bodies& bodies, const State& state,
-                                           const ContactSet& contacts,
-                                           const lcp::VectorRef& allowance,
-                                           const std::vector<JointRow>& joints, bool merged) {
-  BodyPairs links = body_pairs(contacts);
-  const BodyPairs joined = body_pairs(joints);
-  links.insert(links.end(), joined.begin(), joined.end());
-  const std::vector<int> set_of_link =
-      merged ? std::vector<int>(links.size(), 0) : linked_sets(bodies, links);
-  std::vector<ContactIsland> islands;
-  for (std::size_t i = 0; i < links.size(); ++i) {
-    if (set_of_link[i] == static_cast<int>(islands.size())) {
-      islands.emplace_back();
+std::span<const ContactIsland> ContactIslands::find(const Bodies& bodies, const State& state,
+                                                    const ContactSet& contacts,
+                                                    std::span<const double> allowance,
+                                                    std::span<const JointRow> joints, bool merged) {
+  links_.clear();
+  add_body_pairs(contacts, links_);
+  add_body_pairs(joints, links_);
+  const std::vector<int>& set_of_link = sets_.find(bodies, links_);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const std::size_t set = merged ? 0 : static_cast<std::size_t>(set_of_link[i]);
+    if (set == count) {
+      if (count == islands_.size()) {
+        islands_.emplace_back();
+      }
+      islands_[count].members.clear();
+      islands_[count].joints.clear();
+      ++count;
     }
-    ContactIsland& island = islands[set_of_link[i]];
     if (i < contacts.size()) {
-      island.members.push_back(static_cast<int>(i));
+      islands_[set].members.push_back(static_cast<int>(i));
     } else {
-      island.joints.push_back(joints[i - contacts.size()]);
+      islands_[set].joints.push_back(joints[i - contacts.size()]);
     }
   }
-  std::vector<int> local(bodies.size(), -1);
-  for (ContactIsland& island : islands) {
-    fill(bodies, state, contacts, allowance, local, island);
+  local_.resize(bodies.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    fill(bodies, state, contacts, allowance, islands_[k]);
   }
-  return islands;
+  return {islands_.data(), count};
 }
 
 }  // namespace signorini

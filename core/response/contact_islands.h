@@ -5,6 +5,7 @@
 #include <signorini/core/response/joint_rows.h>
 #include <signorini/lcp/types.h>
 
+#include <span>
 #include <vector>
 
 namespace signorini {
@@ -23,15 +24,27 @@ struct ContactIsland {
   std::vector<JointRow> joints;
 };
 
-/// The islands in the order of their first contact, then those with joints alone in the order of
-/// their first joint: depends on the input alone. Cost: O(bodies +
-/// contacts + joints) for all of them.
-/// @param contacts each with a dynamic body. @param allowance one a contact
-/// @param merged all as one island, to check the others against
-[[nodiscard]] std::vector<ContactIsland> contact_islands(const Bodies& bodies, const State& state,
-                                                         const ContactSet& contacts,
-                                                         const lcp::VectorRef& allowance,
-                                                         const std::vector<JointRow>& joints = {},
-                                                         bool merged = false);
+/// Finds the islands of a contact set. Keeps its memory: allocates nothing once no count exceeds an
+/// earlier one of the same island number.
+class ContactIslands {
+ public:
+  /// The islands in the order of their first contact, then those with joints alone in the order of
+  /// their first joint: depends on the input alone. Valid until the next call. Cost: O(bodies +
+  /// contacts + joints) for all of them.
+  /// @param contacts each with a dynamic body. @param allowance one a contact
+  /// @param merged all as one island, to check the others against
+  std::span<const ContactIsland> find(const Bodies& bodies, const State& state,
+                                      const ContactSet& contacts, std::span<const double> allowance,
+                                      std::span<const JointRow> joints = {}, bool merged = false);
+
+ private:
+  void fill(const Bodies& bodies, const State& state, const ContactSet& contacts,
+            std::span<const double> allowance, ContactIsland& island);
+
+  LinkedSets sets_;
+  BodyPairs links_;
+  std::vector<int> local_;              // of every body of the scene, in the island at hand
+  std::vector<ContactIsland> islands_;  // more than the last call found: their memory
+};
 
 }  // namespace signorini

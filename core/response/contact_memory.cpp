@@ -56,11 +56,10 @@ void ContactMemory::add(const PyramidProblem& pyramid, const ContactSet& contact
                         const lcp::VectorRef& z) {
   const int normals = static_cast<int>(contacts.size());
   const int frictional = static_cast<int>(pyramid.frictional.size());
-  const std::vector<Vec3> impulses = contact_impulses(pyramid, contacts, z);
+  contact_impulses(pyramid, contacts, z, impulses_);
   const std::size_t first = entries_.size();
   for (int i = 0; i < normals; ++i) {
-    entries_.push_back({contacts[i].body_a, contacts[i].body_b, contacts[i].feature_id, z[i],
-                        impulses[i] - z[i] * contacts[i].normal, impulses[i], 0.0});
+    add_entry(contacts[i], z[i], impulses_[i]);
   }
   for (int c = 0; c < frictional; ++c) {
     entries_[first + pyramid.frictional[c]].slip = z[normals + pyramid.sides * frictional + c];
@@ -69,18 +68,22 @@ void ContactMemory::add(const PyramidProblem& pyramid, const ContactSet& contact
 
 void ContactMemory::add(const ConeProblem& cones, const ContactSet& contacts,
                         const lcp::VectorRef& z) {
-  const std::vector<Vec3> impulses = contact_impulses(cones, contacts, z);
+  contact_impulses(cones, contacts, z, impulses_);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const Contact& contact = contacts[i];
-    const double normal = z[cones.normal_row[i]];
-    entries_.push_back({contact.body_a, contact.body_b, contact.feature_id, normal,
-                        impulses[i] - normal * contact.normal, impulses[i], 0.0});
+    add_entry(contacts[i], z[cones.normal_row[i]], impulses_[i]);
   }
 }
 
-void ContactMemory::sort() {
-  std::stable_sort(entries_.begin(), entries_.end(),
-                   [](const Entry& a, const Entry& b) { return key(a) < key(b); });
+void ContactMemory::add_entry(const Contact& contact, double normal, const Vec3& whole) {
+  entries_.push_back({contact.body_a, contact.body_b, contact.feature_id, normal,
+                      whole - normal * contact.normal, whole, 0.0,
+                      static_cast<int>(entries_.size())});
+}
+
+void ContactMemory::sort() {  // std::stable_sort allocates
+  std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
+    return std::tuple_cat(key(a), std::tie(a.order)) < std::tuple_cat(key(b), std::tie(b.order));
+  });
 }
 
 const ContactMemory::Entry* ContactMemory::find(const Contact& contact) const {

@@ -43,10 +43,13 @@ class ContactMemory {
     Vec3 friction;  // N s, on A
     Vec3 whole;     // N s, on A
     double slip;    // lambda, m/s
+    int order;      // in which they were added
   };
+  void add_entry(const Contact& contact, double normal, const Vec3& whole);
   [[nodiscard]] const Entry* find(const Contact& contact) const;
 
   std::vector<Entry> entries_;  // sorted by their keys
+  std::vector<Vec3> impulses_;  // of add()
 };
 
 }  // namespace signorini

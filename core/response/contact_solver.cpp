@@ -33,31 +33,6 @@ void check_allowance(const lcp::VectorRef& allowance, std::size_t contacts) {
   }
 }
 
-/// An island's impulses into the solution. @return whether they are finite
-bool collect(const VelocityProblem& velocity, const ContactSet& contacts,
-             const std::vector<int>& members, const lcp::Result& result,
-             ContactSolution& solution) {
-  const bool usable = result.z.allFinite();
-  if (!lcp::is_solved(result.status)) {
-    solution.detail += (solution.detail.empty() ? "island " : "; island ") +
-                       std::to_string(solution.islands.size() - 1) + ": " +
-                       std::string(lcp::to_string(result.status)) +
-                       (usable ? ", best iterate applied" : ", no impulses applied");
-  }
-  solution.status = worse(solution.status, result.status);
-  if (usable) {
-    const lcp::Vector normals = velocity.normal_impulses(result.z);
-    const std::vector<Vec3> impulses = velocity.impulses(contacts, result.z);
-    const std::vector<Vec3> moments = velocity.moments(result.z);
-    for (std::size_t j = 0; j < members.size(); ++j) {
-      solution.normal_impulses[members[j]] = normals[static_cast<lcp::Index>(j)];
-      solution.impulses[members[j]] = impulses[j];
-      solution.moments[members[j]] = moments[j];
-    }
-  }
-  return usable;
-}
-
 /// One solver for whatever an island is.
 IslandSettings island_settings(const ContactSolverSettings& settings) {
   return {.solver = settings.solver,
@@ -88,7 +63,9 @@ void ContactSolverSettings::validate() const {
 }
 
 ContactSolver::ContactSolver(const ContactSolverSettings& settings)
-    : settings_(settings), solver_(island_settings(settings)) {
+    : settings_(settings),
+      accuracy_name_(settings.accuracy ? settings.accuracy->name() : ""),
+      solver_(island_settings(settings)) {
   settings_.validate();
 }
 
@@ -102,48 +79,90 @@ void ContactSolver::solve(const Bodies& bodies, const ContactSet& contacts,
   validate(contacts, static_cast<int>(bodies.size()));
   check_allowance(allowance, contacts.size());
   check_dynamic(bodies, contacts);
-
-  ContactSolution fresh;
-  fresh.status = lcp::Status::kSolved;
-  fresh.normal_impulses = lcp::Vector::Zero(allowance.size());
-  fresh.impulses.assign(contacts.size(), Vec3::Zero());
-  fresh.moments.assign(contacts.size(), Vec3::Zero());
-  fresh.island_of.assign(contacts.size(), -1);
-  fresh.accuracy = settings_.accuracy ? settings_.accuracy->name() : "";
-  fresh.is_deterministic =
-      !std::isfinite(settings_.budget.seconds) && !std::isfinite(settings_.lcp.time_limit);
-  const FrictionModel model = settings_.accuracy ? FrictionModel::kCone : settings_.friction_model;
-  next_memory_.forget();
-  VelocityProblem velocity;
-  for (const ContactIsland& island : contact_islands(bodies, state, contacts, allowance)) {
-    velocity.assemble(model, island.bodies, island.state, island.contacts, island.allowance,
-                      settings_.pyramid_sides);
-    ContactSet members;  // with the body numbers of the scene, which memory knows
-    members.reserve(island.members.size());
-    for (const int i : island.members) {
-      members.push_back(contacts[i]);
-      fresh.island_of[i] = static_cast<int>(fresh.islands.size());
+  start(contacts.size());
+  const auto islands = islands_.find(
+      bodies, state, contacts, {allowance.data(), static_cast<std::size_t>(allowance.size())});
+  if (answers_.size() < islands.size()) {
+    answers_.resize(islands.size());
+  }
+  fresh_.islands.resize(islands.size());
+  std::size_t worst = 0;
+  double seconds = 0.0;
+  for (std::size_t k = 0; k < islands.size(); ++k) {
+    IslandAnswer& answer = answers_[k];
+    answer.velocity.assemble(friction_model(), islands[k].bodies, islands[k].state,
+                             islands[k].contacts, islands[k].allowance, settings_.pyramid_sides);
+    answer.contacts.clear();
+    for (const int i : islands[k].members) {
+      answer.contacts.push_back(contacts[i]);
+      fresh_.island_of[i] = static_cast<int>(k);
     }
-    lcp::Result result;
-    const double part = static_cast<double>(members.size()) / static_cast<double>(contacts.size());
-    double work = 0.0;
-    solver_.solve(velocity, members, {}, {memory_, {}}, settings_.budget.share(part), result, work);
-    fresh.islands.push_back(describe(island, velocity.problem(), result, model));
-    fresh.islands.back().work = work;
-    fresh.work += work;
-    if (collect(velocity, members, island.members, result, fresh)) {
-      velocity.remember(members, result.z, next_memory_);
-    }
-    keep_worse(std::move(result), fresh.result);
+    const double part =
+        static_cast<double>(answer.contacts.size()) / static_cast<double>(contacts.size());
+    solver_.solve({}, {memory_, {}}, settings_.budget.share(part), answer);
+    collect(k, islands[k]);
+    seconds += std::max(answer.result.statistics.solve_seconds, 0.0);
+    worst = is_worse(answer.result, answers_[worst].result) ? k : worst;
+  }
+  if (!islands.empty()) {
+    std::swap(fresh_.result, answers_[worst].result);
+    fresh_.result.statistics.solve_seconds = seconds;
   }
   next_memory_.sort();
   std::swap(memory_, next_memory_);
 
   const double before = kinetic_energy(bodies, state);
-  apply_contact_impulses(bodies, contacts, fresh.impulses, state);
-  apply_contact_moments(bodies, contacts, fresh.moments, state);
-  fresh.energy_change = kinetic_energy(bodies, state) - before;
-  solution = std::move(fresh);
+  apply_contact_impulses(bodies, contacts, fresh_.impulses, state);
+  apply_contact_moments(bodies, contacts, fresh_.moments, state);
+  fresh_.energy_change = kinetic_energy(bodies, state) - before;
+  std::swap(solution, fresh_);
+}
+
+FrictionModel ContactSolver::friction_model() const {
+  return settings_.accuracy ? FrictionModel::kCone : settings_.friction_model;
+}
+
+/// Makes fresh_ the solution of so many contacts that are not solved yet.
+void ContactSolver::start(std::size_t contacts) {
+  fresh_.status = lcp::Status::kSolved;
+  fresh_.normal_impulses.setZero(static_cast<lcp::Index>(contacts));
+  fresh_.impulses.assign(contacts, Vec3::Zero());
+  fresh_.moments.assign(contacts, Vec3::Zero());
+  fresh_.island_of.assign(contacts, -1);
+  lcp::start_result(contacts > 0 ? fresh_.result.z.size() : 0, fresh_.result);
+  fresh_.accuracy = accuracy_name_;
+  fresh_.work = 0.0;
+  fresh_.is_deterministic =
+      !std::isfinite(settings_.budget.seconds) && !std::isfinite(settings_.lcp.time_limit);
+  fresh_.detail.clear();
+  next_memory_.forget();
+}
+
+/// An island's solution into fresh_ and the next memory.
+void ContactSolver::collect(std::size_t number, const ContactIsland& island) {
+  const IslandAnswer& answer = answers_[number];
+  const lcp::Result& result = answer.result;
+  IslandReport& told = fresh_.islands[number];
+  describe(island, answer.velocity.problem(), result, friction_model(), told);
+  told.work = answer.work;
+  fresh_.work += answer.work;
+  const bool usable = result.z.allFinite();
+  if (!lcp::is_solved(result.status)) {
+    fresh_.detail += (fresh_.detail.empty() ? "island " : "; island ") + std::to_string(number) +
+                     ": " + std::string(lcp::to_string(result.status)) +
+                     (usable ? ", best iterate applied" : ", no impulses applied");
+  }
+  fresh_.status = worse(fresh_.status, result.status);
+  if (usable) {
+    answer.velocity.impulses(answer.contacts, result.z, impulses_);
+    answer.velocity.moments(result.z, moments_);
+    for (std::size_t j = 0; j < island.members.size(); ++j) {
+      fresh_.normal_impulses[island.members[j]] = answer.velocity.normal_impulse(result.z, j);
+      fresh_.impulses[island.members[j]] = impulses_[j];
+      fresh_.moments[island.members[j]] = moments_[j];
+    }
+    answer.velocity.remember(answer.contacts, result.z, next_memory_);
+  }
 }
 
 lcp::Vector allowances(const Bodies& bodies, const State& state, const ContactSet& contacts,

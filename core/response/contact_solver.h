@@ -3,6 +3,7 @@
 #include <signorini/core/model/body.h>
 #include <signorini/core/model/contact.h>
 #include <signorini/core/response/accuracy.h>
+#include <signorini/core/response/contact_islands.h>
 #include <signorini/core/response/contact_memory.h>
 #include <signorini/core/response/island_solver.h>
 #include <signorini/core/response/step_report.h>
@@ -66,7 +67,9 @@ struct ContactSolution {
 /// Islands are found and solved apart, to the same bits as each alone; a single contact has a
 /// closed form where there is one. Positions are not corrected.
 ///
-/// Not for two threads at once; two solvers share nothing.
+/// Not for two threads at once; two solvers share nothing. With kCone our own code allocates
+/// nothing once no count of bodies, contacts or rows is other than in the solve before; hand in the
+/// same solution again, for its memory.
 class ContactSolver {
  public:
   /// @throws std::invalid_argument for bad settings
@@ -86,10 +89,19 @@ class ContactSolver {
   [[nodiscard]] const ContactSolverSettings& settings() const { return settings_; }
 
  private:
+  [[nodiscard]] FrictionModel friction_model() const;
+  void start(std::size_t contacts);
+  void collect(std::size_t number, const ContactIsland& island);
+
   ContactSolverSettings settings_;
+  std::string accuracy_name_;
   IslandSolver solver_;
   ContactMemory memory_;
   ContactMemory next_memory_;
+  ContactIslands islands_;  // from here on kept for its memory
+  std::vector<IslandAnswer> answers_;
+  std::vector<Vec3> impulses_, moments_;
+  ContactSolution fresh_;
 };
 
 /// The allowance of every contact for a step of h seconds (h > 0), m/s: gap/h, so that a gap may

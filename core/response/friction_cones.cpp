@@ -15,39 +15,41 @@ void assemble_cones(const Bodies& bodies, const State& free_state, const Contact
                                 std::to_string(allowance.size()));
   }
   check_dynamic(bodies, contacts);
-  std::vector<Velocity> velocities;
-  if (!contacts.empty()) {
-    velocities = velocities_of(bodies, free_state);
-  }
   ConeProblem fresh = std::move(out);  // its memory
+  const std::vector<Velocity>& velocities = fresh.memory.velocities;
+  velocities_of(bodies, free_state, fresh.memory.velocities);
   fresh.normal_row.clear();
   fresh.frames.clear();
   fresh.friction.clear();
   fresh.problem.cones.clear();
   fresh.problem.limits.clear();
-  fresh.problem.lower.resize(0);
-  fresh.problem.upper.resize(0);
-  NormalRows rows;
+  NormalRows& rows = fresh.memory.rows;
   if (auto* used = std::get_if<lcp::FactoredMatrix>(&fresh.problem.M)) {
     rows.A = std::move(*used);
   }
-  start_rows(bodies, free_state, contacts, rows, body_pairs(joints));
-  std::vector<double> q;
-  q.reserve(3 * contacts.size());
+  fresh.memory.joined.clear();
+  add_body_pairs(joints, fresh.memory.joined);
+  start_rows(bodies, free_state, contacts, rows, fresh.memory.joined);
+  lcp::Index size = static_cast<lcp::Index>(contacts.size() + joints.size());
+  for (const Contact& contact : contacts) {
+    size += contact.material.friction > 0.0 ? 2 : 0;
+  }
+  lcp::Vector& q = fresh.problem.q;
+  q.resize(size);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const Contact& contact = contacts[i];
     fresh.normal_row.push_back(rows.A.rows());
     fresh.frames.emplace_back();
     fresh.friction.push_back(contact.material.friction);
     add_row(free_state, contact, contact.normal, contact.point_a, contact.point_b, rows);
-    q.push_back(gap_velocity(velocities, free_state, contact) +
-                allowance[static_cast<lcp::Index>(i)]);
+    q[fresh.normal_row.back()] =
+        gap_velocity(velocities, free_state, contact) + allowance[static_cast<lcp::Index>(i)];
     if (contact.material.friction > 0.0) {
       const Vec3 slip = slip_velocity(velocities, free_state, contact);
       const TangentFrame frame = friction_frame(contact, slip);
       for (const Vec3& tangent : {frame.t1, frame.t2}) {
         add_tangent_row(free_state, contact, tangent, rows);
-        q.push_back(tangent.dot(slip));
+        q[rows.A.rows() - 1] = tangent.dot(slip);
       }
       fresh.frames.back() = frame;
       fresh.problem.cones.push_back({.normal_row = fresh.normal_row.back(),
@@ -56,9 +58,7 @@ void assemble_cones(const Bodies& bodies, const State& free_state, const Contact
     }
   }
   add_joint_rows(joints, rows);
-  q.resize(q.size() + joints.size());
-  fresh.problem.q = Eigen::Map<const lcp::Vector>(q.data(), static_cast<lcp::Index>(q.size()));
-  set_joint_bounds(joint_velocities(bodies, free_state, joints), joints, fresh.problem);
+  set_joint_bounds(velocities, joints, fresh.problem);
   fresh.problem.M = std::move(rows.A);
   out = std::move(fresh);
 }
@@ -71,9 +71,9 @@ lcp::Vector normal_impulses(const ConeProblem& cones, const lcp::VectorRef& z) {
   return f;
 }
 
-std::vector<Vec3> contact_impulses(const ConeProblem& cones, const ContactSet& contacts,
-                                   const lcp::VectorRef& z) {
-  std::vector<Vec3> impulses;
+void contact_impulses(const ConeProblem& cones, const ContactSet& contacts, const lcp::VectorRef& z,
+                      std::vector<Vec3>& impulses) {
+  impulses.clear();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const int row = cones.normal_row[i];
     impulses.emplace_back(z[row] * contacts[i].normal);
@@ -81,6 +81,12 @@ std::vector<Vec3> contact_impulses(const ConeProblem& cones, const ContactSet& c
       impulses.back() += z[row + 1] * cones.frames[i].t1 + z[row + 2] * cones.frames[i].t2;
     }
   }
+}
+
+std::vector<Vec3> contact_impulses(const ConeProblem& cones, const ContactSet& contacts,
+                                   const lcp::VectorRef& z) {
+  std::vector<Vec3> impulses;
+  contact_impulses(cones, contacts, z, impulses);
   return impulses;
 }
 

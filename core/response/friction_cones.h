@@ -23,6 +23,7 @@ struct ConeProblem {
   std::vector<int> normal_row;       ///< of each contact
   std::vector<TangentFrame> frames;  ///< of each contact; used where mu > 0
   std::vector<double> friction;      ///< mu of each contact
+  AssemblyMemory memory;
 
   [[nodiscard]] const lcp::FactoredMatrix& A() const {
     return std::get<lcp::FactoredMatrix>(problem.M);
@@ -43,6 +44,8 @@ void assemble_cones(const Bodies& bodies, const State& free_state, const Contact
 /// f of every contact, N s.
 [[nodiscard]] lcp::Vector normal_impulses(const ConeProblem& cones, const lcp::VectorRef& z);
 /// The impulse of every contact on its body A, world axes, N s: f N + beta_1 t1 + beta_2 t2.
+void contact_impulses(const ConeProblem& cones, const ContactSet& contacts, const lcp::VectorRef& z,
+                      std::vector<Vec3>& impulses);
 [[nodiscard]] std::vector<Vec3> contact_impulses(const ConeProblem& cones,
                                                  const ContactSet& contacts,
                                                  const lcp::VectorRef& z);

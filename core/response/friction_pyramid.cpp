@@ -105,7 +105,9 @@ void assemble_pyramid(const Bodies& bodies, const State& free_state, const Conta
                       std::span<const JointRow> joints) {
   check_arguments(contacts, allowance, sides);
   NormalRows rows;
-  assemble_normals(bodies, free_state, contacts, rows, body_pairs(joints));
+  BodyPairs joined;
+  add_body_pairs(joints, joined);
+  assemble_normals(bodies, free_state, contacts, rows, joined);
   const int normals = static_cast<int>(contacts.size());
   out.sides = sides;
   out.frictional.clear();
@@ -129,7 +131,9 @@ void assemble_pyramid(const Bodies& bodies, const State& free_state, const Conta
   out.problem = {};
   out.problem.q =
       lcp::Vector::Zero(normals + (sides + 1) * m + static_cast<lcp::Index>(joints.size()));
-  set_joint_bounds(joint_velocities(bodies, free_state, joints), joints, out.problem);
+  if (!joints.empty()) {
+    set_joint_bounds(velocities_of(bodies, free_state), joints, out.problem);
+  }
   out.problem.q.head(normals) = rows.d_dot + allowance;
   if (m == 0) {
     out.problem.M = std::move(rows.A);
@@ -144,10 +148,10 @@ void assemble_pyramid(const Bodies& bodies, const State& free_state, const Conta
   out.problem.M = expand(rows.A.form(), contacts, out.frictional, directions);
 }
 
-std::vector<Vec3> contact_impulses(const PyramidProblem& pyramid, const ContactSet& contacts,
-                                   const lcp::VectorRef& z) {
+void contact_impulses(const PyramidProblem& pyramid, const ContactSet& contacts,
+                      const lcp::VectorRef& z, std::vector<Vec3>& impulses) {
   const int normals = static_cast<int>(contacts.size());
-  std::vector<Vec3> impulses(normals);
+  impulses.resize(normals);
   for (int i = 0; i < normals; ++i) {
     impulses[i] = z[i] * contacts[i].normal;
   }
@@ -160,6 +164,12 @@ std::vector<Vec3> contact_impulses(const PyramidProblem& pyramid, const ContactS
     const TangentFrame& frame = pyramid.frames[c];
     impulses[pyramid.frictional[c]] += friction[0] * frame.t1 + friction[1] * frame.t2;
   }
+}
+
+std::vector<Vec3> contact_impulses(const PyramidProblem& pyramid, const ContactSet& contacts,
+                                   const lcp::VectorRef& z) {
+  std::vector<Vec3> impulses;
+  contact_impulses(pyramid, contacts, z, impulses);
   return impulses;
 }
 

@@ -50,6 +50,8 @@ void assemble_pyramid(const Bodies& bodies, const State& free_state, const Conta
                       std::span<const JointRow> joints = {});
 
 /// The impulse of every contact on its body A, world axes, N s: f N + sum_j beta_j t_j.
+void contact_impulses(const PyramidProblem& pyramid, const ContactSet& contacts,
+                      const lcp::VectorRef& z, std::vector<Vec3>& impulses);
 [[nodiscard]] std::vector<Vec3> contact_impulses(const PyramidProblem& pyramid,
                                                  const ContactSet& contacts,
                                                  const lcp::VectorRef& z);

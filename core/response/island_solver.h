@@ -7,12 +7,12 @@
 #include <signorini/lcp/result.h>
 #include <signorini/lcp/solver.h>
 
-#include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
-#include <utility>
+#include <string_view>
+#include <vector>
 
 namespace signorini {
 
@@ -30,6 +30,16 @@ struct IslandSettings {
 struct StepMemory {
   const ContactMemory& contacts;
   const JointMemory& joints;
+};
+
+/// An island's problem and its solution; kept from step to step, for its memory.
+struct IslandAnswer {
+  VelocityProblem velocity;
+  ContactSet
+      contacts;       ///< with the scene's body numbers, as the memory of the step before has them
+  lcp::Vector start;  ///< of the warm start
+  lcp::Result result;
+  double work = 0.0;  ///< what was spent, in units of StepBudget::work
 };
 
 /// Solves islands one after the other with solvers of its own, for one thread. The answer depends
@@ -51,12 +61,10 @@ class IslandSolver {
  public:
   explicit IslandSolver(const IslandSettings& settings) : settings_(settings) {}
 
-  /// @param contacts with the scene's body numbers, as the memory has them
+  /// @param island has velocity and contacts; receives result and work
   /// @param budget of this island
-  /// @param work receives what was spent, in units of StepBudget::work
-  void solve(const VelocityProblem& velocity, const ContactSet& contacts,
-             std::span<const JointRow> joints, const StepMemory& memory, const StepBudget& budget,
-             lcp::Result& result, double& work);
+  void solve(std::span<const JointRow> joints, const StepMemory& memory, const StepBudget& budget,
+             IslandAnswer& island);
 
  private:
   struct Try {
@@ -67,31 +75,35 @@ class IslandSolver {
   /// One of each name and tolerance is kept, made anew where its iterations change: those that a
   /// budget allows are any number.
   struct Made {
+    std::string name;
+    double tolerance = 0.0;
     int most = -1;
     std::unique_ptr<lcp::Solver> solver;
   };
   void solve_by_settings(const lcp::Problem& problem, bool has_joints, const lcp::Vector* start,
                          lcp::Result& result);
-  void solve_by_dial(const lcp::Problem& problem, const lcp::Vector* start,
-                     const StepBudget& budget, lcp::Result& result, double& work);
-  [[nodiscard]] std::vector<Try> choose(const lcp::Problem& problem, bool is_warm,
-                                        bool is_limited) const;
+  void solve_by_dial(const lcp::Problem& problem, const StepBudget& budget, bool is_warm,
+                     IslandAnswer& island);
+  void choose(const lcp::Problem& problem, bool is_warm, bool is_limited);
   [[nodiscard]] double tolerance(const lcp::Problem& problem) const;
-  [[nodiscard]] lcp::Result attempt(const lcp::Problem& problem, const std::string& name, int most,
-                                    double seconds, const lcp::Vector* start);
-  [[nodiscard]] lcp::Solver& solver(const std::string& name, double tolerance, int most);
+  void attempt(const lcp::Problem& problem, std::string_view name, int most, double seconds,
+               const lcp::Vector* start, lcp::Result& result);
+  [[nodiscard]] lcp::Solver& solver(std::string_view name, double tolerance, int most);
 
   IslandSettings settings_;
-  std::map<std::pair<std::string, double>, Made> made_;
-  lcp::Vector start_;
+  std::vector<Made> made_;
+  lcp::Certifier certifier_;
+  std::vector<Try> chain_;
+  lcp::Result another_;  // of an attempt that is not an island's first
+  std::vector<lcp::Attempt> attempts_;
 };
 
 /// What was solved for an island, and how well.
-[[nodiscard]] IslandReport describe(const ContactIsland& island, const lcp::Problem& problem,
-                                    const lcp::Result& result, FrictionModel model);
+void describe(const ContactIsland& island, const lcp::Problem& problem, const lcp::Result& result,
+              FrictionModel model, IslandReport& report);
 
-/// Keeps the result of the island that ended worse (not solved before solved, then by the unit-free
-/// residual), with the sum of both times.
-void keep_worse(lcp::Result&& result, lcp::Result& kept);
+/// Whether the result of an island is worse than that of another: not solved before solved, then by
+/// the unit-free residual.
+[[nodiscard]] bool is_worse(const lcp::Result& result, const lcp::Result& than);
 
 }  // namespace signorini

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <exception>
 #include <numeric>
 
 namespace signorini {
@@ -30,20 +29,21 @@ void IslandThreads::run(const std::vector<int>& sizes,
   }
   order_.resize(sizes.size());
   std::iota(order_.begin(), order_.end(), 0);
-  std::stable_sort(order_.begin(), order_.end(), [&](int a, int b) { return sizes[a] > sizes[b]; });
-  std::vector<std::exception_ptr> thrown(sizes.size());
+  std::sort(order_.begin(), order_.end(),
+            [&](int a, int b) { return sizes[a] != sizes[b] ? sizes[a] > sizes[b] : a < b; });
+  thrown_.assign(sizes.size(), nullptr);
   std::atomic<int> next{0};
   auto work = [&](int member) {
     for (int k = next++; k < count; k = next++) {
       try {
         solve(order_[k], solvers_[member]);
       } catch (...) {
-        thrown[order_[k]] = std::current_exception();
+        thrown_[order_[k]] = std::current_exception();
       }
     }
   };
   team_->run(work);
-  for (const std::exception_ptr& exception : thrown) {
+  for (const std::exception_ptr& exception : thrown_) {
     if (exception != nullptr) {
       std::rethrow_exception(exception);
     }

@@ -170,13 +170,10 @@ void joint_rows(const Joints& joints, const State& state, double step,
   }
 }
 
-BodyPairs body_pairs(std::span<const JointRow> rows) {
-  BodyPairs pairs;
-  pairs.reserve(rows.size());
+void add_body_pairs(std::span<const JointRow> rows, BodyPairs& pairs) {
   for (const JointRow& row : rows) {
     pairs.emplace_back(row.body_a, row.body_b);
   }
-  return pairs;
 }
 
 void add_joint_rows(std::span<const JointRow> joints, NormalRows& rows,
@@ -206,32 +203,35 @@ void add_joint_rows(std::span<const JointRow> joints, NormalRows& rows,
   }
 }
 
-lcp::Vector joint_velocities(const Bodies& bodies, const State& state,
-                             std::span<const JointRow> rows) {
-  lcp::Vector w(static_cast<lcp::Index>(rows.size()));
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const JointRow& row = rows[i];
-    const Velocity a = velocity(bodies[row.body_a], state[row.body_a]);
-    const Velocity b = velocity(bodies[row.body_b], state[row.body_b]);
-    w[static_cast<lcp::Index>(i)] = row.linear.dot(a.linear - b.linear) +
-                                    row.angular_a.dot(a.angular) - row.angular_b.dot(b.angular);
-  }
-  return w;
+double joint_velocity(const JointRow& row, const Velocity& a, const Velocity& b) {
+  return row.linear.dot(a.linear - b.linear) + row.angular_a.dot(a.angular) -
+         row.angular_b.dot(b.angular);
 }
 
-void set_joint_bounds(const lcp::VectorRef& velocities, std::span<const JointRow> rows,
-                      lcp::Problem& problem) {
+void set_joint_bounds(std::span<const JointRow> rows, lcp::Problem& problem) {
   if (rows.empty()) {
+    problem.lower.resize(0);
+    problem.upper.resize(0);
     return;
   }
-  const lcp::Index first = problem.size() - static_cast<lcp::Index>(rows.size());
-  problem.lower = lcp::Vector::Zero(problem.size());
-  problem.upper = lcp::Vector::Constant(problem.size(), kInfinity);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const lcp::Index row = first + static_cast<lcp::Index>(i);
-    problem.q[row] = velocities[static_cast<lcp::Index>(i)] + rows[i].bias;
-    problem.lower[row] = rows[i].lower;
-    problem.upper[row] = rows[i].upper;
+  problem.lower.setZero(problem.size());
+  problem.upper.setConstant(problem.size(), kInfinity);
+  lcp::Index row = problem.size() - static_cast<lcp::Index>(rows.size());
+  for (const JointRow& joint : rows) {
+    problem.lower[row] = joint.lower;
+    problem.upper[row] = joint.upper;
+    ++row;
+  }
+}
+
+void set_joint_bounds(const std::vector<Velocity>& velocities, std::span<const JointRow> rows,
+                      lcp::Problem& problem) {
+  set_joint_bounds(rows, problem);
+  lcp::Index row = problem.size() - static_cast<lcp::Index>(rows.size());
+  for (const JointRow& joint : rows) {
+    problem.q[row] =
+        joint_velocity(joint, velocities[joint.body_a], velocities[joint.body_b]) + joint.bias;
+    ++row;
   }
 }
 

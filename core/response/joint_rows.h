@@ -59,21 +59,30 @@ struct JointRow {
 /// @throws std::invalid_argument where the anchors of a distance coincide: no direction
 void joint_rows(const Joints& joints, const State& state, double step, std::vector<JointRow>& rows);
 
-/// The two bodies of every row.
-[[nodiscard]] BodyPairs body_pairs(std::span<const JointRow> rows);
+/// Adds the two bodies of every row.
+void add_body_pairs(std::span<const JointRow> rows, BodyPairs& pairs);
 
 /// Adds the rows to A, after those that it has; blocks as start_rows() made them.
 /// @param relative_compliance of each row, in units of its A_ii, >= 0
 void add_joint_rows(std::span<const JointRow> joints, NormalRows& rows,
                     double relative_compliance = 0.0);
 
-/// J v of every row, without bias.
-[[nodiscard]] lcp::Vector joint_velocities(const Bodies& bodies, const State& state,
-                                           std::span<const JointRow> rows);
+/// J v of a row, without bias. @param a, b velocities of its bodies
+[[nodiscard]] double joint_velocity(const JointRow& row, const Velocity& a, const Velocity& b);
 
-/// Writes q, lower and upper of the problem's last rows, which are these; all before are 0 <= z.
-void set_joint_bounds(const lcp::VectorRef& velocities, std::span<const JointRow> rows,
+/// Writes lower and upper of the problem's last rows, which are these; all before are 0 <= z.
+/// Without joint rows the problem has no bounds.
+void set_joint_bounds(std::span<const JointRow> rows, lcp::Problem& problem);
+/// That, and J v + bias into q. @param velocities of the bodies
+void set_joint_bounds(const std::vector<Velocity>& velocities, std::span<const JointRow> rows,
                       lcp::Problem& problem);
+
+/// What assembling a step's problem needs beside its outcome, kept from step to step.
+struct AssemblyMemory {
+  std::vector<Velocity> velocities;  // of the bodies
+  BodyPairs joined;
+  NormalRows rows;  // its A is in the problem
+};
 
 /// What a joint did in a step, and how well it holds.
 struct JointReport {

@@ -6,20 +6,14 @@
 namespace signorini {
 namespace {
 
-/// h^2 times the stiffness of a body's joints, and its longest arm.
-struct Load {
-  Mat3 stiffness = Mat3::Zero();
-  double arm_squared = 0.0;
-
-  void add(const Vec3& force, const Vec3& arm) {
-    stiffness += arm.dot(force) * Mat3::Identity() -
-                 0.5 * (force * arm.transpose() + arm * force.transpose());
-    arm_squared = std::max(arm_squared, arm.squaredNorm());
-  }
-};
+void add(const Vec3& force, const Vec3& arm, JointLoad& load) {
+  load.stiffness +=
+      arm.dot(force) * Mat3::Identity() - 0.5 * (force * arm.transpose() + arm * force.transpose());
+  load.arm_squared = std::max(load.arm_squared, arm.squaredNorm());
+}
 
 /// S in body axes, or zero.
-Mat3 excess(const Body& body, const BodyState& state, const Load& load) {
+Mat3 excess(const Body& body, const BodyState& state, const JointLoad& load) {
   const Mat3 R = state.q.toRotationMatrix();
   const Mat3 wanted = R.transpose() * load.stiffness * R - body.inertia -
                       body.mass * load.arm_squared * Mat3::Identity();
@@ -30,30 +24,32 @@ Mat3 excess(const Body& body, const BodyState& state, const Load& load) {
 
 }  // namespace
 
-Bodies stiffened(const Bodies& bodies, const State& state, const Joints& joints,
-                 const std::vector<JointReport>& before, double step, int& stiffened_bodies) {
-  std::vector<Load> loads(bodies.size());
+int stiffen(const Bodies& bodies, const State& state, const Joints& joints,
+            const std::vector<JointReport>& before, double step, std::vector<JointLoad>& loads,
+            Bodies& stiff) {
+  loads.assign(bodies.size(), {});
   for (std::size_t i = 0; i < before.size(); ++i) {
     const Joint& joint = joints[i];
     if (joint.kind == JointKind::kBall || joint.kind == JointKind::kHinge) {
       const Vec3 force = step * before[i].impulse;
-      loads[joint.body_a].add(force, state[joint.body_a].q * joint.anchor_a);
-      loads[joint.body_b].add(-force, state[joint.body_b].q * joint.anchor_b);
+      add(force, state[joint.body_a].q * joint.anchor_a, loads[joint.body_a]);
+      add(-force, state[joint.body_b].q * joint.anchor_b, loads[joint.body_b]);
     }
   }
-  Bodies result = bodies;
-  stiffened_bodies = 0;
+  int count = 0;
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     if (!bodies[k].is_dynamic() || loads[k].stiffness.isZero(0.0)) {
       continue;
     }
     const Mat3 added = excess(bodies[k], state[k], loads[k]);
     if (!added.isZero(0.0)) {
-      result[k].inertia += 0.5 * (added + added.transpose());
-      ++stiffened_bodies;
+      if (count++ == 0) {
+        stiff = bodies;
+      }
+      stiff[k].inertia += 0.5 * (added + added.transpose());
     }
   }
-  return result;
+  return count;
 }
 
 }  // namespace signorini

@@ -6,6 +6,12 @@
 
 namespace signorini {
 
+/// h^2 times the stiffness of a body's joints, and its longest arm.
+struct JointLoad {
+  Mat3 stiffness = Mat3::Zero();
+  double arm_squared = 0.0;
+};
+
 /// Light links under a heavy load, kept from whipping: the geometric stiffness of balls and hinges,
 /// implicit in the orientation (Tournier, Nesme, Gilles, Faure, Stable constrained dynamics, ACM
 /// Transactions on Graphics 34, 2015; body by body as Andrews, Teichmann, Kry, Geometric stiffness
@@ -25,9 +31,12 @@ namespace signorini {
 ///
 /// @param state of the step's start. @param before one a joint: what joints did in the step before
 /// @param step h, s
-/// @return the bodies with J + S (body axes) in the place of J
-[[nodiscard]] Bodies stiffened(const Bodies& bodies, const State& state, const Joints& joints,
-                               const std::vector<JointReport>& before, double step,
-                               int& stiffened_bodies);
+/// @param stiff receives the bodies with J + S (body axes) in the place of J, where there is one
+/// with S != 0; else it is left as it is
+/// @param loads memory
+/// @return how many have S != 0
+int stiffen(const Bodies& bodies, const State& state, const Joints& joints,
+            const std::vector<JointReport>& before, double step, std::vector<JointLoad>& loads,
+            Bodies& stiff);
 
 }  // namespace signorini

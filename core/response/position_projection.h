@@ -3,10 +3,14 @@
 #include <signorini/core/model/body.h>
 #include <signorini/core/model/contact.h>
 #include <signorini/core/model/joint.h>
+#include <signorini/core/response/assembly.h>
+#include <signorini/core/response/joint_rows.h>
+#include <signorini/core/response/joint_stiffness.h>
 #include <signorini/lcp/solver.h>
 #include <signorini/lcp/status.h>
 
 #include <string>
+#include <vector>
 
 namespace signorini {
 
@@ -61,12 +65,44 @@ inline constexpr double kProjectionCompliance = 1e-12;
 /// pass makes half, a quarter .. of D where all of it brings no joint closer, D then in the metric
 /// of joint_stiffness.h for the forces l.
 ///
-/// @param gravity for energy_change, m/s^2
-/// @param solver takes a factored symmetric LCP, with free rows if there are joints; l in kg m
-/// @param metric the bodies whose masses measure D, if others than `bodies`
-/// @throws std::invalid_argument as assemble_normals() and Solver::solve(); state is then unchanged
-void project_positions(const Bodies& bodies, const ContactSet& contacts, const Vec3& gravity,
-                       lcp::Solver& solver, State& state, ProjectionReport& report,
-                       const Joints& joints = {}, const Bodies* metric = nullptr);
+/// Keeps its memory: allocates nothing once no count exceeds an earlier one.
+class PositionProjection {
+ public:
+  /// @param gravity for energy_change, m/s^2
+  /// @param solver takes a factored symmetric LCP, with free rows if there are joints; l in kg m
+  /// @param metric the bodies whose masses measure D, if others than `bodies`
+  /// @throws std::invalid_argument as start_rows() and Solver::solve(); state is then unchanged
+  void project(const Bodies& bodies, const ContactSet& contacts, const Vec3& gravity,
+               lcp::Solver& solver, State& state, ProjectionReport& report,
+               const Joints& joints = {}, const Bodies* metric = nullptr);
+
+ private:
+  struct Scene {
+    const Bodies& bodies;
+    const Joints& joints;
+    lcp::Solver& solver;
+  };
+  void run(const Scene& scene, const Bodies& metric, State& state, ProjectionReport& report);
+  bool solve(const Scene& scene, const Bodies& metric, const State& state,
+             ProjectionReport& report);
+  void assemble(const Bodies& metric, const State& state);
+  void measure(const Joints& joints, const State& state);
+  void choose_length(const Scene& scene, const State& state);
+  void displace(double length, const State& state, State& moved) const;
+
+  ContactSet contacts_;  // carried along
+  std::vector<JointRow> joined_;
+  double error_ = 0.0;   // of joined_
+  double length_ = 1.0;  // the part of D that is made
+  State start_, moved_;
+  BodyPairs pairs_;
+  NormalRows rows_;
+  lcp::Problem problem_;
+  lcp::Result result_;
+  lcp::Vector push_, displacement_;
+  std::vector<JointReport> pushes_;
+  std::vector<JointLoad> loads_;
+  Bodies stiff_;
+};
 
 }  // namespace signorini

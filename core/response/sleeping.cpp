@@ -93,41 +93,41 @@ double Sleepers::settle(const Bodies& bodies, const BodyPairs& pairs, double ste
     slow_for_[k] = slow && bodies[k].is_dynamic() ? slow_for_[k] + step : 0.0;
   }
   // The sets, by their first pair, and the shortest rest of their bodies.
-  const std::vector<int> set_of_pair = linked_sets(bodies, pairs);
+  const std::vector<int>& set_of_pair = sets_.find(bodies, pairs);
   const int sets =
       set_of_pair.empty() ? 0 : *std::max_element(set_of_pair.begin(), set_of_pair.end()) + 1;
-  std::vector<double> rest(sets, std::numeric_limits<double>::infinity());
+  rest_.assign(sets, std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     for (const int body : {pairs[i].first, pairs[i].second}) {
       const bool driven = bodies[body].kind == BodyKind::kKinematic;
       if (bodies[body].is_dynamic()) {
-        rest[set_of_pair[i]] = std::min(rest[set_of_pair[i]], slow_for_[body]);
+        rest_[set_of_pair[i]] = std::min(rest_[set_of_pair[i]], slow_for_[body]);
       } else if (driven && moves(bodies[body], state[body], body)) {
-        rest[set_of_pair[i]] = 0.0;
+        rest_[set_of_pair[i]] = 0.0;
       }
     }
   }
   double lost = 0.0;
-  std::vector<int> group_of_set(sets, -1);
+  group_of_set_.assign(sets, -1);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const int set = set_of_pair[i];
-    if (!(rest[set] > settings_.after)) {
+    if (!(rest_[set] > settings_.after)) {
       continue;
     }
     for (const int body : {pairs[i].first, pairs[i].second}) {
       if (!bodies[body].is_dynamic() || is_asleep(body)) {
         continue;
       }
-      if (group_of_set[set] < 0) {
+      if (group_of_set_[set] < 0) {
         const auto unused = std::find_if(groups_.begin(), groups_.end(),
                                          [](const auto& group) { return group.empty(); });
-        group_of_set[set] = static_cast<int>(unused - groups_.begin());
+        group_of_set_[set] = static_cast<int>(unused - groups_.begin());
         if (unused == groups_.end()) {
           groups_.emplace_back();
         }
       }
-      group_[body] = group_of_set[set];
-      groups_[group_of_set[set]].push_back(body);
+      group_[body] = group_of_set_[set];
+      groups_[group_of_set_[set]].push_back(body);
       ++asleep_;
       lost += kinetic_energy(bodies[body], state[body]);
       state[body].p.setZero();

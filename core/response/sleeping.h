@@ -56,6 +56,9 @@ class Sleepers {
   std::vector<std::vector<int>> groups_;  // empty: free to be used again
   std::vector<double> slow_for_;          // s
   State left_;                            // as the last step left it
+  LinkedSets sets_;                       // from here on memory of settle()
+  std::vector<double> rest_;
+  std::vector<int> group_of_set_;
   int asleep_ = 0;
 };
 

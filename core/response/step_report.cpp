@@ -1,7 +1,29 @@
 #include <signorini/core/model/number_text.h>
 #include <signorini/core/response/step_report.h>
 
+#include <utility>
+
 namespace signorini {
+
+void start_report(StepReport& report) {
+  StepReport fresh;
+  const auto keep = [&](auto StepReport::*member) {
+    std::swap(fresh.*member, report.*member);
+    (fresh.*member).clear();
+  };
+  keep(&StepReport::contacts);
+  keep(&StepReport::impulses);
+  keep(&StepReport::moments);
+  keep(&StepReport::island_of);
+  keep(&StepReport::joints);
+  keep(&StepReport::accuracy);
+  keep(&StepReport::detail);
+  std::swap(fresh.islands, report.islands);  // with their texts; resized when their number is known
+  std::swap(fresh.normal_impulses, report.normal_impulses);
+  std::swap(fresh.result, report.result);
+  lcp::start_result(fresh.result.z.size(), fresh.result);
+  report = std::move(fresh);
+}
 
 std::string to_text(const StepReport& report) {
   const auto count = [](std::size_t number) { return std::to_string(number); };

@@ -78,6 +78,9 @@ struct StepReport {
   std::string detail;  ///< one line: anything beyond the plain scheme
 };
 
+/// Makes it the report of a step that did nothing yet; keeps its memory.
+void start_report(StepReport& report);
+
 /// The report as text: a line on rows made and left out, by reason, then a line an island.
 [[nodiscard]] std::string to_text(const StepReport& report);
 

@@ -1,8 +1,6 @@
-#include <signorini/core/model/contact_kinematics.h>
 #include <signorini/core/model/number_text.h>
 #include <signorini/core/response/assembly.h>
 #include <signorini/core/response/joint_stiffness.h>
-#include <signorini/core/response/position_projection.h>
 #include <signorini/core/response/set_impact.h>
 #include <signorini/core/response/time_stepper.h>
 #include <signorini/lcp/certificate.h>
@@ -10,7 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdint>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -30,9 +28,18 @@ void require_not_negative(double value, const char* field, const char* unit) {
           number_text(value) + " " + unit);
 }
 
-void append(const std::string& text, std::string& detail) {
+void append(std::string_view text, std::string& detail) {
   if (!text.empty()) {
-    detail += (detail.empty() ? "" : "; ") + text;
+    detail += detail.empty() ? "" : "; ";
+    detail += text;
+  }
+}
+
+/// "3 contacts ..", where there are any.
+void append_count(int count, std::string_view what, std::string& detail) {
+  if (count > 0) {
+    append(std::to_string(count), detail);
+    detail += what;
   }
 }
 
@@ -76,113 +83,11 @@ int dynamic_bodies(const Bodies& bodies) {
 }
 
 /// " of island 2", or nothing where there is one.
-std::string of_island(const StepReport& report) {
-  const std::size_t number = report.islands.size();
-  return number == 1 ? "" : " of island " + std::to_string(number - 1);
+std::string of_island(int number, const StepReport& report) {
+  return report.islands.size() == 1 ? "" : " of island " + std::to_string(number);
 }
 
 }  // namespace
-
-/// Which contacts are in a step's problem, and how fast each may close.
-class TimeStepper::Selection {
- public:
-  Selection(const ContactSet& found, const lcp::Vector& d_dot, const lcp::Vector& d_dot_free,
-            const TimeStepSettings& settings, const Bodies& bodies, const Sleepers& sleepers)
-      : found_(found), fate_(found.size(), Fate::kInProblem), allowance_(found.size()) {
-    const double h = settings.step;
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      const Contact& contact = found[i];
-      const double e = contact.material.restitution;
-      const bool touching = contact.gap <= settings.touching_tolerance;
-      const double one_step = std::abs(d_dot_free[i] - d_dot[i]);
-      const bool fast = d_dot[i] < -std::max(settings.restitution_threshold, one_step);
-      const bool would_be_caught = contact.gap + h * d_dot_free[i] < 0.0;
-      const bool bounces = touching && classify(d_dot[i], settings.restitution_threshold) ==
-                                           ContactClass::kColliding;
-      allowance_[i] = bounces ? e * d_dot[i] : closable_gap(contact.gap) / h;
-      const bool a_sleeps = sleepers.is_asleep(contact.body_a);
-      const bool b_sleeps = sleepers.is_asleep(contact.body_b);
-      const bool one_sleeps = a_sleeps || b_sleeps;  // does not act, or it would have woken it
-      const bool keeps_apart = !settings.full_model && !touching &&
-                               contact.gap > kToleratedOverlap &&
-                               d_dot_free[i] + allowance_[i] > 0.0;
-      if ((a_sleeps && (b_sleeps || !bodies[contact.body_b].is_dynamic())) ||
-          (b_sleeps && !bodies[contact.body_a].is_dynamic())) {
-        fate_[i] = Fate::kAsleep;
-      } else if (!one_sleeps && e > 0.0 && !touching && fast && would_be_caught) {
-        fate_[i] = Fate::kAboutToBounce;
-      } else if (one_sleeps || keeps_apart) {
-        fate_[i] = Fate::kApart;
-      }
-    }
-  }
-
-  /// Those in the problem, or those apart with them.
-  [[nodiscard]] ContactSet contacts(bool with_apart) const {
-    ContactSet chosen;
-    chosen.reserve(found_.size());
-    for (std::size_t i = 0; i < found_.size(); ++i) {
-      if (fate_[i] == Fate::kInProblem || (with_apart && fate_[i] == Fate::kApart)) {
-        chosen.push_back(found_[i]);
-      }
-    }
-    return chosen;
-  }
-  /// Of the contacts in the problem.
-  [[nodiscard]] lcp::Vector allowance() const {
-    lcp::Vector chosen(static_cast<lcp::Index>(found_.size()));
-    lcp::Index count = 0;
-    for (std::size_t i = 0; i < found_.size(); ++i) {
-      if (fate_[i] == Fate::kInProblem) {
-        chosen[count++] = allowance_[i];
-      }
-    }
-    chosen.conservativeResize(count);
-    return chosen;
-  }
-  [[nodiscard]] int apart() const { return count(Fate::kApart); }
-  [[nodiscard]] int about_to_bounce() const { return count(Fate::kAboutToBounce); }
-  [[nodiscard]] int asleep() const { return count(Fate::kAsleep); }
-
-  /// Puts back those that close farther than allowed. When it happens again, all of bodies awake:
-  /// in a loose stack, which falls as one, every contact would else wait for the one below it.
-  /// @return them; empty: none closes too far
-  BodyPairs put_back(const std::vector<Velocity>& velocities, const State& state,
-                     const Sleepers& sleepers) {
-    constexpr double kRounding = 1e-13;  // m/s
-    std::vector<bool> closes(found_.size());
-    for (std::size_t i = 0; i < found_.size(); ++i) {
-      closes[i] = fate_[i] == Fate::kApart &&
-                  gap_velocity(velocities, state, found_[i]) + allowance_[i] < -kRounding;
-    }
-    BodyPairs back;
-    if (std::find(closes.begin(), closes.end(), true) == closes.end()) {
-      return back;
-    }
-    for (std::size_t i = 0; i < found_.size(); ++i) {
-      const int a = found_[i].body_a;
-      const int b = found_[i].body_b;
-      const bool awake = !sleepers.is_asleep(a) && !sleepers.is_asleep(b);
-      if (fate_[i] == Fate::kApart && (closes[i] || (has_put_back_ && awake))) {
-        fate_[i] = Fate::kInProblem;
-        back.emplace_back(a, b);
-      }
-    }
-    has_put_back_ = true;
-    return back;
-  }
-
- private:
-  enum class Fate : std::uint8_t { kInProblem, kAboutToBounce, kApart, kAsleep };
-  [[nodiscard]] int count(Fate fate) const {
-    return static_cast<int>(std::count(fate_.begin(), fate_.end(), fate));
-  }
-
-  const ContactSet& found_;
-  std::vector<Fate> fate_;
-  std::vector<double> allowance_;  // m/s
-  bool has_put_back_ = false;
-};
 
 void TimeStepSettings::validate() const {
   require(step > 0.0 && std::isfinite(step), "step", "finite and > 0", number_text(step) + " s");
@@ -213,6 +118,7 @@ TimeStepper::TimeStepper(Bodies bodies, ContactFinder& finder, const TimeStepSet
       sleepers_(settings.sleep, static_cast<int>(bodies_.size())),
       joint_memory_(joints_.size()) {
   settings_.validate();
+  accuracy_name_ = settings_.accuracy ? settings_.accuracy->name() : "";
   for (const Body& body : bodies_) {
     validate(body);
   }
@@ -252,34 +158,29 @@ bool TimeStepper::is_asleep(const Joint& joint) const {
 }
 
 /// The bodies with the inertia that the step's problems have.
-Bodies TimeStepper::solved_bodies(const State& state, StepReport& report) const {
+const Bodies& TimeStepper::solved_bodies(const State& state, StepReport& report) {
   report.stiffened_bodies = 0;
   if (!settings_.joint_stiffness || joints_before_.empty()) {
     return bodies_;
   }
-  std::vector<JointReport> before = joints_before_;
+  loads_before_ = joints_before_;
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     if (is_asleep(joints_[i])) {
-      before[i] = {};
+      loads_before_[i] = {};
     }
   }
-  Bodies solved =
-      stiffened(bodies_, state, joints_, before, settings_.step, report.stiffened_bodies);
-  if (report.stiffened_bodies > 0) {
-    append(std::to_string(report.stiffened_bodies) + " links under a heavy load stiffened",
-           report.detail);
-  }
-  return solved;
+  report.stiffened_bodies =
+      stiffen(bodies_, state, joints_, loads_before_, settings_.step, loads_, stiff_);
+  return report.stiffened_bodies > 0 ? stiff_ : bodies_;
 }
 
-State TimeStepper::with_forces_applied(const State& start) const {
-  State state = start;
+void TimeStepper::apply_forces(const State& start, State& free) const {
+  free = start;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     if (bodies_[k].is_dynamic() && !sleepers_.is_asleep(static_cast<int>(k))) {
-      state[k].p += settings_.step * bodies_[k].mass * bodies_[k].gravity_scale * settings_.gravity;
+      free[k].p += settings_.step * bodies_[k].mass * bodies_[k].gravity_scale * settings_.gravity;
     }
   }
-  return state;
 }
 
 FrictionModel TimeStepper::friction_model() const {
@@ -319,19 +220,19 @@ void TimeStepper::find(const State& state) {
   }
 }
 
-void TimeStepper::solve_islands(const std::vector<ContactIsland>& islands, const State& start,
+void TimeStepper::solve_islands(std::span<const ContactIsland> islands, const State& start,
                                 StepReport& report) {
-  std::vector<int> sizes;
+  island_sizes_.clear();
   int contacts_and_joints = 0;
   for (const ContactIsland& island : islands) {
-    sizes.push_back(static_cast<int>(island.members.size() + island.joints.size()));
-    contacts_and_joints += sizes.back();
+    island_sizes_.push_back(static_cast<int>(island.members.size() + island.joints.size()));
+    contacts_and_joints += island_sizes_.back();
   }
   if (answers_.size() < islands.size()) {
     answers_.resize(islands.size());
   }
   const StepMemory memory{memory_, joint_memory_};
-  island_threads_.run(sizes, [&](int k, IslandSolver& solver) {
+  const auto solve = [&](int k, IslandSolver& solver) {
     const ContactIsland& island = islands[k];
     IslandAnswer& answer = answers_[k];
     answer.contacts.clear();
@@ -340,49 +241,56 @@ void TimeStepper::solve_islands(const std::vector<ContactIsland>& islands, const
     }
     answer.velocity.assemble(friction_model(), island.bodies, island.state, island.contacts,
                              island.allowance, settings_.pyramid_sides, island.joints);
-    const double share = static_cast<double>(sizes[k]) / contacts_and_joints;
-    solver.solve(answer.velocity, answer.contacts, island.joints, memory,
-                 settings_.budget.share(share), answer.result, answer.work);
-  });
+    const double share = static_cast<double>(island_sizes_[k]) / contacts_and_joints;
+    solver.solve(island.joints, memory, settings_.budget.share(share), answer);
+  };
+  island_threads_.run(island_sizes_, std::ref(solve));
 
-  report.normal_impulses = lcp::Vector::Zero(static_cast<lcp::Index>(report.contacts.size()));
+  report.normal_impulses.setZero(static_cast<lcp::Index>(report.contacts.size()));
   report.impulses.assign(report.contacts.size(), Vec3::Zero());
   report.moments.assign(report.contacts.size(), Vec3::Zero());
   report.island_of.assign(report.contacts.size(), -1);
   report.joints.assign(joints_.size(), {});
-  report.islands.clear();
-  report.result = {};
+  report.islands.resize(islands.size());
   report.rows = report.joint_rows = report.tangents_left_out = 0;
   report.dynamic_bodies_without_rows = dynamic_bodies(bodies_);
   report.status = lcp::Status::kSolved;
   next_memory_.forget();
+  std::size_t worst = 0;
+  double seconds = 0.0;
   for (std::size_t k = 0; k < islands.size(); ++k) {
-    collect(answers_[k], islands[k], start, report);
+    collect(static_cast<int>(k), islands[k], start, report);
+    seconds += std::max(answers_[k].result.statistics.solve_seconds, 0.0);
+    worst = is_worse(answers_[k].result, answers_[worst].result) ? k : worst;
   }
   if (islands.empty()) {
-    VelocityProblem none;
-    none.assemble(friction_model(), bodies_, {}, {}, lcp::Vector(), settings_.pyramid_sides);
-    projection_solver_->solve(none.problem(), report.result);
+    nothing_.assemble(friction_model(), bodies_, start, {}, lcp::Vector(), settings_.pyramid_sides);
+    projection_solver_->solve(nothing_.problem(), report.result);
+  } else {
+    std::swap(report.result, answers_[worst].result);
+    report.result.statistics.solve_seconds = seconds;
   }
 }
 
 /// An island's solution, or its best iterate, into the report and the next memory.
-void TimeStepper::collect(IslandAnswer& answer, const ContactIsland& island, const State& start,
+void TimeStepper::collect(int number, const ContactIsland& island, const State& start,
                           StepReport& report) {
-  lcp::Result& result = answer.result;
-  report.islands.push_back(describe(island, answer.velocity.problem(), result, friction_model()));
-  report.islands.back().work = answer.work;
+  const IslandAnswer& answer = answers_[number];
+  const lcp::Result& result = answer.result;
+  IslandReport& told = report.islands[number];
+  describe(island, answer.velocity.problem(), result, friction_model(), told);
+  told.work = answer.work;
   report.work += answer.work;
-  report.rows += report.islands.back().rows;
-  report.joint_rows += report.islands.back().joint_rows;
-  report.dynamic_bodies_without_rows -= report.islands.back().bodies;
+  report.rows += told.rows;
+  report.joint_rows += told.joint_rows;
+  report.dynamic_bodies_without_rows -= told.bodies;
   for (const int i : island.members) {
-    report.island_of[i] = static_cast<int>(report.islands.size()) - 1;
+    report.island_of[i] = number;
     report.tangents_left_out += report.contacts[i].material.friction > 0.0 ? 0 : 2;
   }
   const bool usable = result.z.allFinite();
   if (!lcp::is_solved(result.status)) {
-    append("velocity problem" + of_island(report) + ": " +
+    append("velocity problem" + of_island(number, report) + ": " +
                std::string(lcp::to_string(result.status)) +
                (usable ? ", best iterate applied" : ", no impulses applied"),
            report.detail);
@@ -390,31 +298,26 @@ void TimeStepper::collect(IslandAnswer& answer, const ContactIsland& island, con
   report.status = worse(report.status, result.status);
   if (usable) {
     answer.velocity.remember(answer.contacts, result.z, next_memory_);
-    const lcp::Vector normals = answer.velocity.normal_impulses(result.z);
-    const std::vector<Vec3> impulses = answer.velocity.impulses(answer.contacts, result.z);
-    const std::vector<Vec3> moments = answer.velocity.moments(result.z);
+    answer.velocity.impulses(answer.contacts, result.z, impulses_);
+    answer.velocity.moments(result.z, moments_);
     for (std::size_t j = 0; j < island.members.size(); ++j) {
-      report.normal_impulses[island.members[j]] = normals[static_cast<lcp::Index>(j)];
-      report.impulses[island.members[j]] = impulses[j];
-      report.moments[island.members[j]] = moments[j];
+      report.normal_impulses[island.members[j]] = answer.velocity.normal_impulse(result.z, j);
+      report.impulses[island.members[j]] = impulses_[j];
+      report.moments[island.members[j]] = moments_[j];
     }
-    const lcp::Vector joint_impulses = answer.velocity.joint_impulses(result.z);
+    const lcp::VectorRef joint_impulses = answer.velocity.joint_impulses(result.z);
     remember_joints(island.joints, joint_impulses, next_joint_memory_);
     add_joint_impulses(joints_, start, island.joints, joint_impulses, report.joints);
   }
-  keep_worse(std::move(result), report.result);
 }
 
 // `state` has the momenta after the impulses and the positions of the start.
-void TimeStepper::move(const State& start, const ContactSet& contacts, State& state) const {
-  std::vector<bool> in_contact(bodies_.size(), false);
-  for (const Contact& contact : contacts) {
-    in_contact[contact.body_a] = true;
-    in_contact[contact.body_b] = true;
-  }
+void TimeStepper::move(const State& start, State& state) {
+  in_contact_.assign(bodies_.size(), false);
+  selection_.mark_bodies(found_, in_contact_);
   for (const Joint& joint : joints_) {
-    in_contact[joint.body_a] = true;
-    in_contact[joint.body_b] = true;
+    in_contact_[joint.body_a] = true;
+    in_contact_[joint.body_b] = true;
   }
   const Integrator in_rows = settings_.integrator == Integrator::kEnergyMomentum
                                  ? Integrator::kEnergyMomentum
@@ -423,7 +326,7 @@ void TimeStepper::move(const State& start, const ContactSet& contacts, State& st
     if (sleepers_.is_asleep(static_cast<int>(k))) {
       continue;
     }
-    if (in_contact[k]) {
+    if (in_contact_[k]) {
       integrate_free(bodies_[k], Vec3::Zero(), Vec3::Zero(), settings_.step, in_rows,
                      settings_.orientation, state[k]);
     } else {
@@ -437,28 +340,29 @@ void TimeStepper::move(const State& start, const ContactSet& contacts, State& st
 
 void TimeStepper::project(const Bodies& solved, State& state, StepReport& report) {
   find(state);
-  const ContactSet& contacts = found_;
-  const lcp::Vector d_dot = gap_velocities(bodies_, state, contacts);
+  velocities_of(bodies_, state, velocities_);
+  gap_velocities(velocities_, state, found_, d_dot_);
   const double bounce_speed = std::max(kRestingSpeed, settings_.restitution_threshold);
-  ContactSet chosen;
-  chosen.reserve(contacts.size());
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const bool leaves = d_dot[i] > kRestingSpeed;
-    const bool will_bounce = contacts[i].material.restitution > 0.0 && d_dot[i] < -bounce_speed;
-    const bool asleep =
-        sleepers_.is_asleep(contacts[i].body_a) || sleepers_.is_asleep(contacts[i].body_b);
-    if (!asleep && (contacts[i].gap >= 0.0 || !(leaves || will_bounce))) {
-      chosen.push_back(contacts[i]);
+  overlapping_.clear();
+  for (std::size_t i = 0; i < found_.size(); ++i) {
+    const Contact& contact = found_[i];
+    const bool leaves = d_dot_[i] > kRestingSpeed;
+    const bool will_bounce = contact.material.restitution > 0.0 && d_dot_[i] < -bounce_speed;
+    const bool asleep = sleepers_.is_asleep(contact.body_a) || sleepers_.is_asleep(contact.body_b);
+    if (!asleep && (contact.gap >= 0.0 || !(leaves || will_bounce))) {
+      overlapping_.push_back(contact);
     }
   }
-  Joints awake = joints_;
-  std::erase_if(awake, [&](const Joint& joint) { return is_asleep(joint); });
-  ProjectionReport projection;
-  project_positions(bodies_, chosen, settings_.gravity, *projection_solver_, state, projection,
-                    awake, &solved);
-  report.projection_status = projection.status;
-  report.energy_change_projection = projection.energy_change;
-  append(projection.detail, report.detail);
+  const bool some_sleep = sleepers_.count() > 0;
+  if (some_sleep) {
+    awake_ = joints_;
+    std::erase_if(awake_, [&](const Joint& joint) { return is_asleep(joint); });
+  }
+  projection_.project(bodies_, overlapping_, settings_.gravity, *projection_solver_, state,
+                      projection_report_, some_sleep ? awake_ : joints_, &solved);
+  report.projection_status = projection_report_.status;
+  report.energy_change_projection = projection_report_.energy_change;
+  append(projection_report_.detail, report.detail);
 }
 
 // The impulses on `state`, which has the free momenta.
@@ -479,10 +383,10 @@ void TimeStepper::apply(const Bodies& solved, State& state, StepReport& report) 
 
 /// Wakes what acts with bodies that move: contacts that the free motion closes, all contacts of
 /// driven bodies that move (they may leave), joints. @return how many bodies woke
-int TimeStepper::wake_touched(const State& state, const State& free,
-                              const std::vector<JointRow>& joined) {
-  const std::vector<Velocity> velocities = velocities_of(bodies_, free);
-  BodyPairs acting = body_pairs(joined);
+int TimeStepper::wake_touched(const State& state) {
+  velocities_of(bodies_, free_, velocities_);
+  pairs_.clear();
+  add_body_pairs(joint_rows_, pairs_);
   const auto may_wake = [&](int sleeper, int other) {
     return sleepers_.is_asleep(sleeper) && bodies_[other].kind != BodyKind::kFixed &&
            !sleepers_.is_asleep(other);
@@ -491,58 +395,68 @@ int TimeStepper::wake_touched(const State& state, const State& free,
     if (!may_wake(contact.body_a, contact.body_b) && !may_wake(contact.body_b, contact.body_a)) {
       continue;
     }
-    const double reach = contact.gap + settings_.step * gap_velocity(velocities, free, contact);
+    const double reach = contact.gap + settings_.step * gap_velocity(velocities_, free_, contact);
     if (reach <= kToleratedOverlap || bodies_[contact.body_a].kind == BodyKind::kKinematic ||
         bodies_[contact.body_b].kind == BodyKind::kKinematic) {
-      acting.emplace_back(contact.body_a, contact.body_b);
+      pairs_.emplace_back(contact.body_a, contact.body_b);
     }
   }
-  return sleepers_.wake_touched(bodies_, state, acting);
+  return sleepers_.wake_touched(bodies_, state, pairs_);
 }
 
 void TimeStepper::settle(State& state, StepReport& report) {
   if (!sleepers_.is_on()) {
     return;
   }
-  BodyPairs pairs = body_pairs(report.contacts);
+  pairs_.clear();
+  add_body_pairs(report.contacts, pairs_);
   for (const Joint& joint : joints_) {
     if (!is_asleep(joint)) {
-      pairs.emplace_back(joint.body_a, joint.body_b);
+      pairs_.emplace_back(joint.body_a, joint.body_b);
     }
   }
-  report.energy_asleep = sleepers_.settle(bodies_, pairs, settings_.step, state);
+  report.energy_asleep = sleepers_.settle(bodies_, pairs_, settings_.step, state);
   report.bodies_asleep = sleepers_.count();
+}
+
+/// Fills selection_ and awake_joint_rows_ for who is awake.
+void TimeStepper::choose_contacts(const State& state) {
+  awake_joint_rows_ = joint_rows_;
+  std::erase_if(awake_joint_rows_,
+                [&](const JointRow& row) { return is_asleep(joints_[row.joint]); });
+  velocities_of(bodies_, state, velocities_);
+  gap_velocities(velocities_, state, found_, d_dot_);
+  velocities_of(bodies_, free_, velocities_);
+  gap_velocities(velocities_, free_, found_, d_dot_free_);
+  selection_.choose(found_, d_dot_, d_dot_free_, settings_, bodies_, sleepers_);
 }
 
 /// Solves for the selected contacts until what was left out keeps apart, and moves the bodies.
 /// @return false, with nothing moved, if bodies woke: the selection is then another
-bool TimeStepper::solve_selection(Selection& selection, const Bodies& solved, const State& state,
-                                  const State& free, const std::vector<JointRow>& joined,
-                                  const std::string& detail, State& next, StepReport& report) {
-  report.contacts_left_out = selection.about_to_bounce();
+bool TimeStepper::solve_selection(const Bodies& solved, const State& state, StepReport& report) {
+  report.contacts_left_out = selection_.about_to_bounce();
   for (;;) {
-    report.detail = detail;
-    if (report.contacts_left_out > 0) {
-      append(std::to_string(report.contacts_left_out) + " contacts about to bounce left out",
-             report.detail);
-    }
-    report.contacts = selection.contacts(false);
+    report.detail.clear();
+    append_count(report.stiffened_bodies, " links under a heavy load stiffened", report.detail);
+    append_count(report.contacts_left_out, " contacts about to bounce left out", report.detail);
+    selection_.fill(found_, report.contacts, allowance_);
     next_joint_memory_ = joint_memory_;
-    solve_islands(contact_islands(solved, free, report.contacts, selection.allowance(), joined,
-                                  settings_.full_model),
+    solve_islands(islands_.find(solved, free_, report.contacts, allowance_, awake_joint_rows_,
+                                settings_.full_model),
                   state, report);
-    next = free;
-    apply(solved, next, report);
-    if (selection.apart() == 0) {
+    next_ = free_;
+    apply(solved, next_, report);
+    if (selection_.apart() == 0) {
       break;
     }
-    const BodyPairs back = selection.put_back(velocities_of(bodies_, next), next, sleepers_);
-    if (back.empty()) {
+    velocities_of(bodies_, next_, velocities_);
+    selection_.put_back(found_, velocities_, next_, sleepers_, pairs_);
+    if (pairs_.empty()) {
       break;
     }
-    report.contacts_put_back += static_cast<int>(back.size());
+    report.contacts_put_back += static_cast<int>(pairs_.size());
     int woken = 0;
-    for (const auto& [a, b] : back) {
+    for (const auto& [a, b] : pairs_) {
       woken += sleepers_.wake(a) + sleepers_.wake(b);
     }
     report.bodies_woken += woken;
@@ -550,18 +464,16 @@ bool TimeStepper::solve_selection(Selection& selection, const Bodies& solved, co
       return false;
     }
   }
-  report.contacts_apart = selection.apart();
-  report.contacts_asleep = selection.asleep();
-  move(state, selection.contacts(true), next);
+  report.contacts_apart = selection_.apart();
+  report.contacts_asleep = selection_.asleep();
+  move(state, next_);
   return true;
 }
 
 void TimeStepper::step(State& state, StepReport& report) {
   validate(bodies_, state);
-  report = {};
-  if (settings_.accuracy) {
-    report.accuracy = settings_.accuracy->name();
-  }
+  start_report(report);
+  report.accuracy = accuracy_name_;
   report.is_deterministic = settings_.budget.seconds == StepBudget::kNone &&
                             settings_.lcp.time_limit == std::numeric_limits<double>::infinity();
   Stopwatch watch;
@@ -570,31 +482,24 @@ void TimeStepper::step(State& state, StepReport& report) {
   report.deepest_overlap = deepest_overlap(found_);
   report.seconds.find = watch.lap();
 
-  std::vector<JointRow> all_joined;
-  joint_rows(joints_, state, settings_.step, all_joined);
-  State free = with_forces_applied(state);
+  joint_rows(joints_, state, settings_.step, joint_rows_);
+  apply_forces(state, free_);
   report.bodies_woken = sleepers_.notice(bodies_, state);
   while (sleepers_.count() > 0 || report.bodies_woken > 0) {
-    free = with_forces_applied(state);  // of those that woke too
-    const int woken = wake_touched(state, free, all_joined);
+    apply_forces(state, free_);  // of those that woke too
+    const int woken = wake_touched(state);
     report.bodies_woken += woken;
     if (woken == 0) {
       break;
     }
   }
-  State next;
-  Bodies solved;
+  const Bodies* solved = nullptr;
   for (bool done = false; !done;) {
-    report.detail.clear();
-    solved = solved_bodies(state, report);
-    const std::string detail = report.detail;
-    std::vector<JointRow> joined = all_joined;
-    std::erase_if(joined, [&](const JointRow& row) { return is_asleep(joints_[row.joint]); });
-    Selection selection(found_, gap_velocities(bodies_, state, found_),
-                        gap_velocities(bodies_, free, found_), settings_, bodies_, sleepers_);
-    done = solve_selection(selection, solved, state, free, joined, detail, next, report);
+    solved = &solved_bodies(state, report);
+    choose_contacts(state);
+    done = solve_selection(*solved, state, report);
     if (!done) {  // some woke
-      free = with_forces_applied(state);
+      apply_forces(state, free_);
     }
   }
   next_memory_.sort();
@@ -608,12 +513,12 @@ void TimeStepper::step(State& state, StepReport& report) {
   }
   report.seconds.solve = watch.lap();
 
-  project(solved, next, report);
-  measure_joints(joints_, next, report.joints);
-  settle(next, report);
-  report.kinetic_energy = kinetic_energy(bodies_, next);
-  report.potential_energy = potential_energy(bodies_, next, settings_.gravity);
-  state = std::move(next);
+  project(*solved, next_, report);
+  measure_joints(joints_, next_, report.joints);
+  settle(next_, report);
+  report.kinetic_energy = kinetic_energy(bodies_, next_);
+  report.potential_energy = potential_energy(bodies_, next_, settings_.gravity);
+  std::swap(state, next_);
   report.seconds.project = watch.lap();
 }
 

@@ -7,7 +7,9 @@
 #include <signorini/core/response/accuracy.h>
 #include <signorini/core/response/contact_islands.h>
 #include <signorini/core/response/contact_memory.h>
+#include <signorini/core/response/contact_selection.h>
 #include <signorini/core/response/island_threads.h>
+#include <signorini/core/response/position_projection.h>
 #include <signorini/core/response/sleeping.h>
 #include <signorini/core/response/step_report.h>
 #include <signorini/core/response/velocity_problem.h>
@@ -16,6 +18,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -137,7 +140,9 @@ class TimeStepper {
 
   /// One step. If the velocity problem is not solved, the best iterate is applied and report.status
   /// says so: the caller decides whether to go on. A best iterate that is not finite is not applied
-  /// (report.detail says so).
+  /// (report.detail says so). Our own code allocates nothing once no count of bodies, contacts or
+  /// rows of an island is other than in the step before (a sparse back-end does: lcp/back_end.h),
+  /// with the accuracy dial; hand in the same report again, for its memory.
   /// @throws std::invalid_argument for a bad state, for contacts that validate() refuses or of
   /// which no body is dynamic, or if the solver refuses this kind of problem; state is then
   /// unchanged
@@ -159,50 +164,62 @@ class TimeStepper {
 
  private:
   [[nodiscard]] bool is_asleep(const Joint& joint) const;
-  [[nodiscard]] Bodies solved_bodies(const State& state, StepReport& report) const;
-  [[nodiscard]] State with_forces_applied(const State& start) const;
+  const Bodies& solved_bodies(const State& state, StepReport& report);
+  void apply_forces(const State& start, State& free) const;
   [[nodiscard]] FrictionModel friction_model() const;
   [[nodiscard]] IslandSettings island_settings() const;
   void find(const State& state);
-  int wake_touched(const State& state, const State& free, const std::vector<JointRow>& joined);
+  int wake_touched(const State& state);
   void settle(State& state, StepReport& report);
-  void solve_islands(const std::vector<ContactIsland>& islands, const State& start,
+  void choose_contacts(const State& state);
+  void solve_islands(std::span<const ContactIsland> islands, const State& start,
                      StepReport& report);
-  struct IslandAnswer;
-  void collect(IslandAnswer& answer, const ContactIsland& island, const State& start,
-               StepReport& report);
+  void collect(int number, const ContactIsland& island, const State& start, StepReport& report);
   void apply(const Bodies& solved, State& state, StepReport& report) const;
-  void move(const State& start, const ContactSet& contacts, State& state) const;
+  void move(const State& start, State& state);
   void project(const Bodies& solved, State& state, StepReport& report);
-  class Selection;
-  bool solve_selection(Selection& selection, const Bodies& solved, const State& state,
-                       const State& free, const std::vector<JointRow>& joined,
-                       const std::string& detail, State& next, StepReport& report);
-
-  /// An island's problem and its solution.
-  struct IslandAnswer {
-    VelocityProblem velocity;
-    ContactSet contacts;  // with the scene's body numbers
-    lcp::Result result;
-    double work = 0.0;
-  };
+  bool solve_selection(const Bodies& solved, const State& state, StepReport& report);
 
   Bodies bodies_;
   ContactFinder& finder_;
   TimeStepSettings settings_;
+  std::string accuracy_name_;
   Joints joints_;
   BodyPairs joined_;  // of the joints whose bodies do not collide: smaller first, sorted
   std::unique_ptr<lcp::Solver> projection_solver_;
   IslandThreads island_threads_;
   Sleepers sleepers_;
-  std::vector<IslandAnswer> answers_;  // their memory
-  ContactSet found_;                   // the contacts of these poses
+  ContactSet found_;  // the contacts of these poses
   std::vector<Pose> found_poses_;
   ContactMemory memory_;
   ContactMemory next_memory_;
   JointMemory joint_memory_;
   JointMemory next_joint_memory_;
   std::vector<JointReport> joints_before_;  // what they did in their last step awake
+
+  // Of the step at hand; kept for its memory.
+  State free_;                        // the step's forces applied
+  State next_;                        // with the impulses, then moved
+  std::vector<JointRow> joint_rows_;  // of all joints
+  std::vector<JointRow> awake_joint_rows_;
+  ContactSelection selection_;
+  std::vector<double> allowance_;  // of the contacts in the problem, m/s
+  ContactIslands islands_;
+  std::vector<int> island_sizes_;
+  std::vector<IslandAnswer> answers_;
+  VelocityProblem nothing_;  // of a step without islands
+  std::vector<Vec3> impulses_, moments_;
+  PositionProjection projection_;
+  ProjectionReport projection_report_;
+  ContactSet overlapping_;  // what is projected
+  Joints awake_;
+  std::vector<JointReport> loads_before_;  // joints_before_ of those awake
+  std::vector<JointLoad> loads_;
+  Bodies stiff_;
+  std::vector<Velocity> velocities_;
+  std::vector<double> d_dot_, d_dot_free_;
+  std::vector<bool> in_contact_;
+  BodyPairs pairs_;
 };
 
 }  // namespace signorini

@@ -53,13 +53,11 @@ void turning_rows(const Bodies& bodies, const State& free_state, const ContactSe
   }
 }
 
-std::vector<Vec3> contact_moments(const std::vector<TurningRow>& rows, std::size_t contacts,
-                                  const lcp::VectorRef& z) {
-  std::vector<Vec3> moments(contacts, Vec3::Zero());
+void add_contact_moments(const std::vector<TurningRow>& rows, const lcp::VectorRef& z,
+                         std::vector<Vec3>& moments) {
   for (std::size_t k = 0; k < rows.size(); ++k) {
     moments[rows[k].contact] += z[static_cast<lcp::Index>(k)] * rows[k].row.angular_a;
   }
-  return moments;
 }
 
 void apply_contact_moments(const Bodies& bodies, const ContactSet& contacts,

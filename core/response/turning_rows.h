@@ -30,9 +30,9 @@ struct TurningRow {
 void turning_rows(const Bodies& bodies, const State& free_state, const ContactSet& contacts,
                   std::vector<TurningRow>& rows);
 
-/// The moment of every contact on its body A (on B: minus that), world axes, N m s.
-[[nodiscard]] std::vector<Vec3> contact_moments(const std::vector<TurningRow>& rows,
-                                                std::size_t contacts, const lcp::VectorRef& z);
+/// Adds to the moment of every contact on its body A (on B: minus that), world axes, N m s.
+void add_contact_moments(const std::vector<TurningRow>& rows, const lcp::VectorRef& z,
+                         std::vector<Vec3>& moments);
 
 /// Gives every contact's moment to its dynamic bodies.
 void apply_contact_moments(const Bodies& bodies, const ContactSet& contacts,

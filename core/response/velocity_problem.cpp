@@ -1,4 +1,5 @@
 #include <signorini/core/response/velocity_problem.h>
+#include <signorini/lcp/group_scale.h>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -24,7 +25,7 @@ void make_box(const Choice& is_boxed, ConeProblem& cones) {
   });
 }
 
-bool is_within(const ConeProblem& cones, const lcp::Vector& z) {
+bool is_within(const ConeProblem& cones, const Vec3& z) {
   const double most = cones.friction.front() * z[0];
   const bool box = cones.problem.cones.empty();
   const double tangential = box ? std::max(std::abs(z[1]), std::abs(z[2])) : std::hypot(z[1], z[2]);
@@ -48,13 +49,13 @@ void VelocityProblem::assemble(FrictionModel model, const Bodies& bodies, const 
   contacts_ = static_cast<Eigen::Index>(contacts.size());
   joints_ = static_cast<Eigen::Index>(joints.size());
   turning_rows(bodies, free_state, contacts, turning_);
-  std::vector<JointRow> behind;
   if (!turning_.empty()) {
+    behind_.clear();
     for (const TurningRow& turning : turning_) {
-      behind.push_back(turning.row);
+      behind_.push_back(turning.row);
     }
-    behind.insert(behind.end(), joints.begin(), joints.end());
-    joints = behind;
+    behind_.insert(behind_.end(), joints.begin(), joints.end());
+    joints = behind_;
   }
   if (model == FrictionModel::kPyramid) {
     PyramidProblem pyramid;
@@ -63,16 +64,15 @@ void VelocityProblem::assemble(FrictionModel model, const Bodies& bodies, const 
     limit_turning();
     return;
   }
-  ConeProblem cones;
-  if (auto* used = std::get_if<ConeProblem>(&form_)) {
-    cones = std::move(*used);
+  auto* cones = std::get_if<ConeProblem>(&form_);
+  if (cones == nullptr) {
+    cones = &form_.emplace<ConeProblem>();
   }
-  assemble_cones(bodies, free_state, contacts, allowance, cones, joints);
+  assemble_cones(bodies, free_state, contacts, allowance, *cones, joints);
   if (model == FrictionModel::kBox || !turning_.empty()) {
-    make_box([&](int row) { return model == FrictionModel::kBox || has_turning(row, cones); },
-             cones);
+    make_box([&](int row) { return model == FrictionModel::kBox || has_turning(row, *cones); },
+             *cones);
   }
-  form_ = std::move(cones);
   limit_turning();
 }
 
@@ -99,20 +99,20 @@ const lcp::Problem& VelocityProblem::problem() const {
   return std::visit([](const auto& form) -> const lcp::Problem& { return form.problem; }, form_);
 }
 
-lcp::Vector VelocityProblem::normal_impulses(const lcp::VectorRef& z) const {
+double VelocityProblem::normal_impulse(const lcp::VectorRef& z, std::size_t contact) const {
   const auto* cones = std::get_if<ConeProblem>(&form_);
-  return cones != nullptr ? signorini::normal_impulses(*cones, z) : lcp::Vector(z.head(contacts_));
+  return z[cones != nullptr ? cones->normal_row[contact] : static_cast<lcp::Index>(contact)];
 }
 
-std::vector<Vec3> VelocityProblem::impulses(const ContactSet& contacts,
-                                            const lcp::VectorRef& z) const {
-  return std::visit([&](const auto& form) { return contact_impulses(form, contacts, z); }, form_);
+void VelocityProblem::impulses(const ContactSet& contacts, const lcp::VectorRef& z,
+                               std::vector<Vec3>& impulses) const {
+  std::visit([&](const auto& form) { contact_impulses(form, contacts, z, impulses); }, form_);
 }
 
-std::vector<Vec3> VelocityProblem::moments(const lcp::VectorRef& z) const {
+void VelocityProblem::moments(const lcp::VectorRef& z, std::vector<Vec3>& moments) const {
   const Eigen::Index rows = static_cast<Eigen::Index>(turning_.size());
-  return contact_moments(turning_, static_cast<std::size_t>(contacts_),
-                         z.segment(z.size() - joints_ - rows, rows));
+  moments.assign(static_cast<std::size_t>(contacts_), Vec3::Zero());
+  add_contact_moments(turning_, z.segment(z.size() - joints_ - rows, rows), moments);
 }
 
 void VelocityProblem::remember(const ContactSet& contacts, const lcp::VectorRef& z,
@@ -125,26 +125,29 @@ int VelocityProblem::recall(const ContactSet& contacts, const ContactMemory& mem
   return std::visit([&](const auto& form) { return memory.recall(form, contacts, z); }, form_);
 }
 
-lcp::Vector VelocityProblem::closed_form() const {
+bool VelocityProblem::closed_form(lcp::Vector& z) const {
   const lcp::Problem& asked = problem();
-  if (joints_ > 0 || !turning_.empty()) {
-    return {};
+  if (joints_ > 0 || contacts_ != 1 || !turning_.empty()) {
+    return false;
   }
-  if (contacts_ == 1 && asked.size() == 1) {
-    lcp::Vector A;
-    lcp::diagonal(asked.M, A);
-    return (-asked.q.array() / A.array()).max(0.0);
+  if (asked.size() == 1) {
+    z.setConstant(1, std::max(-asked.q[0] / lcp::diagonal_block(asked.M, 0, 1)(0, 0), 0.0));
+    return true;
   }
   const auto* cones = std::get_if<ConeProblem>(&form_);
-  if (cones == nullptr || contacts_ != 1) {
-    return {};
+  if (cones == nullptr) {
+    return false;
   }
   if (asked.q[0] >= 0.0) {
-    return lcp::Vector::Zero(3);
+    z.setZero(3);
+    return true;
   }
-  const Mat3 A = lcp::to_dense(asked.M);
-  const lcp::Vector z = A.llt().solve(-asked.q);
-  return z.allFinite() && is_within(*cones, z) ? z : lcp::Vector();
+  const Vec3 sticking = lcp::diagonal_block(asked.M, 0, 3).llt().solve(-Vec3(asked.q));
+  if (!sticking.allFinite() || !is_within(*cones, sticking)) {
+    return false;
+  }
+  z = sticking;
+  return true;
 }
 
 }  // namespace signorini

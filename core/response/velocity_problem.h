@@ -36,24 +36,24 @@ class VelocityProblem {
                 std::span<const JointRow> joints = {});
 
   [[nodiscard]] const lcp::Problem& problem() const;
-  /// f of every contact, N s.
-  [[nodiscard]] lcp::Vector normal_impulses(const lcp::VectorRef& z) const;
+  /// f of a contact, N s.
+  [[nodiscard]] double normal_impulse(const lcp::VectorRef& z, std::size_t contact) const;
   /// z of the joint rows.
-  [[nodiscard]] lcp::Vector joint_impulses(const lcp::VectorRef& z) const {
+  [[nodiscard]] lcp::VectorRef joint_impulses(const lcp::Vector& z) const {
     return z.tail(joints_);
   }
   /// On A, world axes, N s, one a contact.
-  [[nodiscard]] std::vector<Vec3> impulses(const ContactSet& contacts,
-                                           const lcp::VectorRef& z) const;
+  void impulses(const ContactSet& contacts, const lcp::VectorRef& z,
+                std::vector<Vec3>& impulses) const;
   /// Of rolling and spinning friction, on A, world axes, N m s, one a contact.
-  [[nodiscard]] std::vector<Vec3> moments(const lcp::VectorRef& z) const;
+  void moments(const lcp::VectorRef& z, std::vector<Vec3>& moments) const;
   /// Adds to memory; see ContactMemory::add().
   void remember(const ContactSet& contacts, const lcp::VectorRef& z, ContactMemory& memory) const;
   /// The solution of a single contact without joints and without rolling and spinning friction
-  /// where it has a closed form, else empty:
-  /// without friction f = max(0, -q/A); with a cone or a box 0 where q_N >= 0, else -A^-1 q where
-  /// that is within the bounds.
-  [[nodiscard]] lcp::Vector closed_form() const;
+  /// where it has a closed form: without friction f = max(0, -q/A); with a cone or a box 0 where
+  /// q_N >= 0, else -A^-1 q where that is within the bounds. @return whether it has; z is written
+  /// only then
+  [[nodiscard]] bool closed_form(lcp::Vector& z) const;
   /// @return how many contacts were known
   int recall(const ContactSet& contacts, const ContactMemory& memory, lcp::Vector& z) const;
 
@@ -63,6 +63,7 @@ class VelocityProblem {
 
   std::variant<PyramidProblem, ConeProblem> form_;
   std::vector<TurningRow> turning_;  // rows before those of the joints
+  std::vector<JointRow> behind_;     // both
   Eigen::Index contacts_ = 0;
   Eigen::Index joints_ = 0;  // rows
 };

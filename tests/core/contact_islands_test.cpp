@@ -36,9 +36,9 @@ TEST(ContactIslands, FixedBodiesConnectNothingAndBodiesAreNumberedAnew) {
   State state(5);
   state[4].x = Vec3(1, 2, 3);
   const ContactSet contacts{contact_of(4, 0), contact_of(1, 0), contact_of(2, 4), contact_of(1, 0)};
-  lcp::Vector allowance(4);
-  allowance << 1, 2, 3, 4;
-  const auto islands = contact_islands(bodies, state, contacts, allowance);
+  const std::vector<double> allowance{1, 2, 3, 4};
+  ContactIslands finder;
+  const auto islands = finder.find(bodies, state, contacts, allowance);
   ASSERT_EQ(islands.size(), 2u);
   EXPECT_EQ(islands[0].members, (std::vector<int>{0, 2}));
   EXPECT_EQ(islands[1].members, (std::vector<int>{1, 3}));
@@ -51,7 +51,7 @@ TEST(ContactIslands, FixedBodiesConnectNothingAndBodiesAreNumberedAnew) {
   EXPECT_EQ(islands[0].state[2].x, Vec3(1, 2, 3));
   EXPECT_EQ(islands[0].allowance, Eigen::Vector2d(1, 3));
   EXPECT_EQ(islands[1].allowance, Eigen::Vector2d(2, 4));
-  EXPECT_TRUE(contact_islands(bodies, state, {}, lcp::Vector()).empty());
+  EXPECT_TRUE(finder.find(bodies, state, {}, {}).empty());
 }
 
 /// Boxes that slide and turn on a plane, 3 m apart; `count` of them from number `first`.

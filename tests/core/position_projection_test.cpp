@@ -39,7 +39,8 @@ TEST(PositionProjection, LiftsABoxToTheSurfaceAndKeepsItsMomenta) {
   const State before = state;
   PlaneContacts finder(Vec3::UnitZ(), {{TestBox{half}, {}}});
   ProjectionReport report;
-  project_positions(bodies, contacts_of(finder, state), kGravity, *solver(), state, report);
+  PositionProjection().project(bodies, contacts_of(finder, state), kGravity, *solver(), state,
+                               report);
   EXPECT_TRUE(lcp::is_solved(report.status));
   EXPECT_NEAR(state[1].x.z(), 0.5, 1e-12);
   EXPECT_NEAR(report.largest_displacement, 0.001, 1e-12);
@@ -56,7 +57,8 @@ TEST(PositionProjection, SharesTheDisplacementByTheMasses) {
   finder.without_plane();
   finder.pair_balls(1, 2);
   ProjectionReport report;
-  project_positions(bodies, contacts_of(finder, state), Vec3::Zero(), *solver(), state, report);
+  PositionProjection().project(bodies, contacts_of(finder, state), Vec3::Zero(), *solver(), state,
+                               report);
   EXPECT_NEAR(state[1].x.x(), -0.03, 1e-13);
   EXPECT_NEAR(state[2].x.x(), 0.97, 1e-13);
   EXPECT_EQ(report.energy_change, 0.0);
@@ -72,7 +74,8 @@ TEST(PositionProjection, TurnsATiltedBoxOutOfThePlane) {
   // turns by about 1 mrad, 5e-7 m; later ones by next to nothing. Too far out is left as it is.
   for (int i = 0; i < 3; ++i) {
     ProjectionReport report;
-    project_positions(bodies, contacts_of(finder, state), kGravity, *solver(), state, report);
+    PositionProjection().project(bodies, contacts_of(finder, state), kGravity, *solver(), state,
+                                 report);
   }
   double least = 1.0;
   for (const Contact& contact : contacts_of(finder, state)) least = std::min(least, contact.gap);
@@ -88,7 +91,8 @@ TEST(PositionProjection, DoesNotPushIntoAnotherBodyThatIsClose) {
   PlaneContacts finder(Vec3::UnitZ(), {{TestBall{0.5}, {}}, {TestBall{0.5}, {}}});
   finder.pair_balls(2, 1);
   ProjectionReport report;
-  project_positions(bodies, contacts_of(finder, state), kGravity, *solver(), state, report);
+  PositionProjection().project(bodies, contacts_of(finder, state), kGravity, *solver(), state,
+                               report);
   EXPECT_NEAR(state[1].x.z(), 0.5, 1e-13);
   EXPECT_NEAR(state[2].x.z(), 1.5, 1e-13);
 }
@@ -98,7 +102,8 @@ TEST(PositionProjection, DoesNothingWithoutOverlap) {
   State state{at(Vec3::Zero()), at(Vec3(0, 0, 0.5 - 0.5 * kToleratedOverlap))};
   PlaneContacts finder(Vec3::UnitZ(), {{TestBall{0.5}, {}}});
   ProjectionReport report;
-  project_positions(bodies, contacts_of(finder, state), kGravity, *solver(), state, report);
+  PositionProjection().project(bodies, contacts_of(finder, state), kGravity, *solver(), state,
+                               report);
   EXPECT_EQ(report.status, lcp::Status::kNotRun);
   EXPECT_EQ(state[1].x.z(), 0.5 - 0.5 * kToleratedOverlap);
 }
@@ -115,7 +120,7 @@ TEST(PositionProjection, MovesNothingWhereThereIsNoRoom) {
   contacts[1].point_b = Vec3(0, 0, 0.998);
   const State before = state;
   ProjectionReport report;
-  project_positions(bodies, contacts, kGravity, *solver(), state, report);
+  PositionProjection().project(bodies, contacts, kGravity, *solver(), state, report);
   EXPECT_FALSE(lcp::is_solved(report.status));
   EXPECT_NE(report.status, lcp::Status::kNotRun);
   EXPECT_NE(report.detail.find("left as they are"), std::string::npos) << report.detail;
