@@ -52,9 +52,9 @@ struct InteriorPointSettings : SolverSettings {
 /// body (whitened_rows.h). Redundant contacts cost nothing and disturb nothing. A given M may be
 /// nonsymmetric; the method is made for semidefinite M, whatever else it solves.
 ///
-/// A warm start is tried as an active set first. Without one, where contacts of bodies have no upper
-/// bounds and masses within 1 to 100, the set of all rows is: at rest nearly all contacts press, and
-/// one or two factorisations are all; elsewhere the try costs one to three more.
+/// A warm start is tried as an active set first. Without one, where contacts of bodies have no
+/// upper bounds and masses within 1 to 100, the set of all rows is: at rest nearly all contacts
+/// press, and one or two factorisations are all; elsewhere the try costs one to three more.
 ///
 /// Takes no coupled limits and no cones. Statuses beside solved: kIterationLimit, kTimeLimit,
 /// kStalled, and kNumericalBreakdown if a factorisation failed; z is the best iterate that was

@@ -11,13 +11,13 @@ namespace signorini {
 /// The velocity-level contact problem with Coulomb's friction exactly (De Saxce's form,
 /// lcp/problem.h): contact i has the row N and, where mu_i > 0, the rows t1 and t2 after it,
 ///
-///     z = [.., f_i, beta_i1, beta_i2, ..]  N s      w = A z + q = [.., d_i'+ + allowance_i, u_T+,
-///     ..] q = [.., d_i'* + allowance_i, u_T*, ..]  m/s  A = J M^-1 J^T over all these rows 0 <=
-///     f_i ⊥ w_N >= 0,   |beta_i| <= mu_i f_i,   beta_i = -mu_i f_i u_T+/|u_T+| where it slides
+///     z = [.., f_i, beta_i1, beta_i2, ..] N s, w = A z + q = [.., d_i'+ + allowance_i, u_T+, ..],
+///     q = [.., d_i'* + allowance_i, u_T*, ..] m/s, A = J M^-1 J^T over all these rows,
+///     0 <= f_i ⊥ w_N >= 0, |beta_i| <= mu_i f_i, beta_i = -mu_i f_i u_T+/|u_T+| where it slides
 ///
-/// t1, t2: friction_frame(), with anisotropic friction scaled. u* the velocities without contact impulses; friction acts at friction_point(). Without friction
-/// it is the frictionless LCP. M is left factored. Rows of joints
-/// (joint_rows.h) follow after those of all contacts, with their bounds.
+/// t1, t2: friction_frame(), scaled where friction is anisotropic; u* the velocities without
+/// contact impulses; friction acts at friction_point(). Without friction it is an LCP. M is
+/// left factored. Rows of joints (joint_rows.h) follow those of all contacts, with their bounds.
 struct ConeProblem {
   lcp::Problem problem;
   std::vector<int> normal_row;       ///< of each contact

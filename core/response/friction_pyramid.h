@@ -23,13 +23,13 @@ namespace signorini {
 ///         | S mu  -S E^T  0 |        | 0               |    S (mu f - E^T beta)
 ///
 /// beta_ij is the impulse along direction j of contact i, t1 cos(2 pi j/k) + t2 sin(2 pi j/k),
-/// D u_t the slip along it (frames: friction_frame()); u* the velocities without contact impulses. A is over normals and
-/// directions. f and beta are in N s, lambda (the slip speed) and all of w in m/s: to that end the
-/// last rows carry S = diag(A_nn) (Stewart and Trinkle: 1), so that the certificate's unit-free
-/// residual judges every row, whatever the masses are. With S = 1 M is copositive, z^T M z =
-/// |J^T (f, beta)|^2_W + lambda^T mu f; S scales rows and changes no solution. Without friction z =
-/// f and M is left factored, symmetric positive semidefinite. Rows of joints (joint_rows.h) follow
-/// after all these, in A beside the normals: a mixed problem with their bounds.
+/// D u_t the slip along it (friction_frame()); u* the velocities without contact impulses. A is
+/// over normals and directions. f and beta are in N s, lambda (the slip speed) and all of w in m/s:
+/// for that the last rows carry S = diag(A_nn) (Stewart and Trinkle: 1), so that the certificate's
+/// unit-free residual judges every row, whatever the masses are. With S = 1 M is copositive, z^T M
+/// z = |J^T (f, beta)|^2_W + lambda^T mu f; S scales rows and changes no solution. Frictionless z =
+/// f, and M is left factored, symmetric, semidefinite. Rows of joints (joint_rows.h) follow after
+/// all these, in A beside the normals: a mixed problem with their bounds.
 struct PyramidProblem {
   lcp::Problem problem;
   std::vector<int> frictional;       ///< the m contacts with mu > 0, ascending
