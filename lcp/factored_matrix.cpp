@@ -2,9 +2,11 @@
 #include <signorini/lcp/number_text.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace signorini::lcp {
 
@@ -99,14 +101,20 @@ void FactoredMatrix::multiply(const Scalar* z, Scalar* w) const {
 
 void FactoredMatrix::diagonal(Vector& d) const {
   d.resize(rows());
-  Vector inverse_mass_row;
+  std::array<double, 6> of_rigid_body;
+  std::vector<double> of_large_block;
   for (int i = 0; i < rows(); ++i) {
     d[i] = compliance_[i];
     for (const Entry& entry : entries(i)) {
       const int size = mass.dimension(entry.block);
-      inverse_mass_row.resize(size);
-      mass.apply_inverse(entry.block, values(entry), inverse_mass_row.data());
-      d[i] += inverse_mass_row.dot(Eigen::Map<const Vector>(values(entry), size));
+      double* moved = of_rigid_body.data();  // W_b J_ib^T
+      if (size > static_cast<int>(of_rigid_body.size())) {
+        of_large_block.resize(size);
+        moved = of_large_block.data();
+      }
+      mass.apply_inverse(entry.block, values(entry), moved);
+      d[i] +=
+          Eigen::Map<const Vector>(moved, size).dot(Eigen::Map<const Vector>(values(entry), size));
     }
   }
 }
