@@ -224,8 +224,9 @@ Certifier::Measure Certifier::measure_cone(const Problem& problem, std::size_t c
   sum.backward = sum.unit_free > 0.0L ? sum.unit_free / (scale * z_size + size) : 0.0L;
   const long double boundary = std::max(tangential, mu * std::abs(z[0]));
   const long double in_w_tilde = is_coulomb ? mu * slip_size : 0.0L;
-  sum.boundary = natural.is_far_inside ? in_w_tilde : boundary;
-  sum.scaled_boundary = scaled.is_far_inside ? in_w_tilde : scale * boundary;
+  sum.boundary = natural.is_far_inside ? std::min(in_w_tilde, boundary) : boundary;
+  sum.scaled_boundary =
+      scaled.is_far_inside ? std::min(in_w_tilde, scale * boundary) : scale * boundary;
   sum.min_z = static_cast<double>(z[0]);
   sum.cone_violation = static_cast<double>(cone_violation(mu, d, z));
   return sum;

@@ -52,7 +52,7 @@ struct Certificate {
   double unit_free_residual = kNaN;
   /// eps max_i (|M||z| + |q|)_i / |q|_inf: what rounding z and w to double costs the unit-free
   /// residual. No solver that returns doubles can be asked for much less. Cones add
-  /// eps D_c max(|z_T|, mu |z_N|) / |q|_inf; those far inside mu eps (|M||z| + |q|)_T / |q|_inf.
+  /// eps D_c max(|z_T|, mu |z_N|) / |q|_inf, far inside at most mu eps (|M||z| + |q|)_T / |q|_inf.
   double rounding_floor = kNaN;
   /// The same rounding error in the terms of the natural residual:
   /// eps max_i (|M||z| + |q|)_i / (1 + |q|_inf), cones eps max(|z_T|, mu |z_N|) / (1 + |q|_inf);

@@ -290,6 +290,8 @@ TEST(FuzzStudy, WhatWasFoundStaysMended) {
       {"cone-interior-point", 39840, "a cone's scale too small by half, from a closed form"},
       {"cone-interior-point", 81171, "the same, by forty powers of ten"},
       {"alart-curnier", 81171, "the same"},
+      {"alart-curnier", 2018224, "a floor of mu |w_T| larger than that of the boundary"},
+      {"alart-curnier", 2024692, "the same"},
   };
   for (const Found& found : kFound) {
     std::ostringstream out;
