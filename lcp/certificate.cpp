@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace signorini::lcp {
 namespace {
@@ -25,6 +26,9 @@ constexpr double kHidden = 0x1p-40;
 // A force this part of its limit inside the cone is none that rounding z could move to the
 // boundary.
 constexpr long double kFarInside = 1e-3L;
+// Of w~ beside what the projection leaves of it: long double's rounding, which a mu of 1e12 makes
+// more than the residual.
+constexpr long double kLost = 4.0L * std::numeric_limits<long double>::epsilon();
 constexpr long double kWiden = 1.0L + 0x1p-58L;  // more than rounding a cone's norms may cost
 
 Certificate refuse() {
@@ -184,6 +188,7 @@ Certifier::Measure Certifier::measure_cone(const Problem& problem, std::size_t c
       moved[k] = z[k] - rest[k];
       across += k > 0 ? rest[k] * (rest[k] - 2.0L * z[k]) : 0.0L;
     }
+    long double lost = 0.0L;
     const long double moved_tangential = tangential_norm(d, moved.data());
     const long double sum_of_norms = moved_tangential + tangential;
     const long double outside = (tangential - mu * z[0]) + mu * rest[0] +
@@ -193,13 +198,14 @@ Certifier::Measure Certifier::measure_cone(const Problem& problem, std::size_t c
         std::copy(z, z + d, rest.begin());
       } else {
         const long double distance = outside / (1.0L + mu * mu);
+        lost = kLost * std::abs(rest[0]);
         rest[0] -= mu * distance;
         for (int k = 1; k < d; ++k) {
           rest[k] += distance * (moved[k] / moved_tangential);
         }
       }
     }
-    return {std::hypot(rest[0], tangential_norm(d, rest.data())),
+    return {std::hypot(rest[0], tangential_norm(d, rest.data())) + lost,
             outside < -0.5L * kFarInside * mu * z[0]};
   };
   const long double length = std::hypot(z[0], tangential);
