@@ -33,8 +33,7 @@ class Accuracy {
 };
 
 /// What the contact problems of one step may cost; islands share it by their contacts and joint
-/// rows. Where it runs
-/// out the best iterate is applied, with its certificate and status.
+/// rows. Where it runs out the best iterate is applied, with its certificate and status.
 struct StepBudget {
   static constexpr double kNone = std::numeric_limits<double>::infinity();
 

@@ -142,23 +142,40 @@ void IslandSolver::choose(const lcp::Problem& problem, bool is_warm, bool is_lim
   chain_.push_back({"nsgs", "what is left of the budget", -1});
 }
 
+/// What a solver of the dial is told.
+double IslandSolver::aim(std::string_view name, const lcp::Problem& problem) const {
+  const double asked = tolerance(problem);
+  return steps_are_exact(name) ? std::min(asked, tolerance_for(kExactAim, largest_q(problem)))
+                               : asked;
+}
+
 void IslandSolver::attempt(const lcp::Problem& problem, std::string_view name, int most,
                            double seconds, const lcp::Vector* start, lcp::Result& result) {
-  const double asked = tolerance(problem);
-  const double aim =
-      steps_are_exact(name) ? std::min(asked, tolerance_for(kExactAim, largest_q(problem))) : asked;
   if (std::isfinite(seconds)) {  // a solver's time is in its settings
     lcp::SolverSettings own = settings_.lcp;
-    own.tolerance = aim;
+    own.tolerance = aim(name, problem);
     own.max_iterations = most;
     own.time_limit = std::min(own.time_limit, std::max(seconds, kLeastSeconds));
     lcp::make_solver(name, own)->solve(problem, result, start);
   } else {
-    solver(name, aim, most).solve(problem, result, start);
+    solver(name, aim(name, problem), most).solve(problem, result, start);
   }
-  if (aim < asked && !lcp::is_solved(result.status)) {
-    result.status = lcp::judge(result.certificate, asked, result.status);
+  if (!lcp::is_solved(result.status)) {  // by the aim
+    result.status = lcp::judge(result.certificate, tolerance(problem), result.status);
   }
+}
+
+/// The start, or 0 where that is better: what a budget that pays for no solver gives.
+void IslandSolver::certify_start(const lcp::Problem& problem, const lcp::Vector* start,
+                                 lcp::Result& result) {
+  start_.reset(problem);
+  if (start != nullptr) {
+    (void)start_.offer(*start);
+  }
+  result.solver = "none";
+  result.z = start_.z();
+  result.certificate = certifier_.certify(problem, result.z, &result.w);
+  result.status = lcp::judge(result.certificate, tolerance(problem), lcp::Status::kIterationLimit);
 }
 
 /// Tries what the budget allows of the chain; the result is the best attempt's.
@@ -198,20 +215,20 @@ void IslandSolver::solve_by_dial(const lcp::Problem& problem, const StepBudget& 
       used_up = left() > 0.0 ? lcp::Status::kIterationLimit : lcp::Status::kTimeLimit;
       continue;  // a cheaper one may still fit
     }
-    if (!solver(next.solver, tolerance(problem), next.most).refuses(problem).empty()) {
-      continue;
-    }
     const int most = !std::isfinite(allowed) ? next.most
                      : next.most < 0         ? static_cast<int>(std::min(allowed, kMostIterations))
                                      : static_cast<int>(std::min<double>(next.most, allowed));
+    if (!solver(next.solver, aim(next.solver, problem), most).refuses(problem).empty()) {
+      continue;
+    }
     if (take(next, most)) {
       break;
     }
     island.start = result.z;
     start = &island.start;
   }
-  if (attempts_.empty()) {  // nothing could be tried
-    take({"nsgs", "certifies the start", 0}, 0);
+  if (attempts_.empty()) {
+    certify_start(problem, start, result);
   }
   if (used_up != lcp::Status::kNotRun && !lcp::is_solved(result.status)) {
     result.status = used_up;

@@ -4,6 +4,7 @@
 #include <signorini/core/response/contact_islands.h>
 #include <signorini/core/response/step_report.h>
 #include <signorini/core/response/velocity_problem.h>
+#include <signorini/lcp/best_iterate.h>
 #include <signorini/lcp/result.h>
 #include <signorini/lcp/solver.h>
 
@@ -35,8 +36,8 @@ struct StepMemory {
 /// An island's problem and its solution; kept from step to step, for its memory.
 struct IslandAnswer {
   VelocityProblem velocity;
-  ContactSet
-      contacts;       ///< with the scene's body numbers, as the memory of the step before has them
+  /// With the scene's body numbers, as the memory of the step before has them.
+  ContactSet contacts;
   lcp::Vector start;  ///< of the warm start
   lcp::Result result;
   double work = 0.0;  ///< what was spent, in units of StepBudget::work
@@ -56,7 +57,8 @@ struct IslandAnswer {
 ///
 /// With a budget auto, which knows none, gives way to interior-point (no friction), alart-curnier
 /// and nsgs. What the rest of the budget does not pay for is left out; where it pays for nothing
-/// the start is certified, and that is the answer. Result::attempts lists all, auto's too.
+/// the start is certified, and that is the answer (solver "none"). Result::attempts lists all,
+/// auto's too.
 class IslandSolver {
  public:
   explicit IslandSolver(const IslandSettings& settings) : settings_(settings) {}
@@ -86,13 +88,16 @@ class IslandSolver {
                      IslandAnswer& island);
   void choose(const lcp::Problem& problem, bool is_warm, bool is_limited);
   [[nodiscard]] double tolerance(const lcp::Problem& problem) const;
+  [[nodiscard]] double aim(std::string_view name, const lcp::Problem& problem) const;
   void attempt(const lcp::Problem& problem, std::string_view name, int most, double seconds,
                const lcp::Vector* start, lcp::Result& result);
+  void certify_start(const lcp::Problem& problem, const lcp::Vector* start, lcp::Result& result);
   [[nodiscard]] lcp::Solver& solver(std::string_view name, double tolerance, int most);
 
   IslandSettings settings_;
   std::vector<Made> made_;
   lcp::Certifier certifier_;
+  lcp::BestIterate start_;
   std::vector<Try> chain_;
   lcp::Result another_;  // of an attempt that is not an island's first
   std::vector<lcp::Attempt> attempts_;

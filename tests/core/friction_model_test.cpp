@@ -255,6 +255,29 @@ TEST_P(Model, ABallRestsOnASlopeThatItsRollingFrictionHolds) {
   }
 }
 
+// Rows of rolling friction have coupled limits, which the sweeps that a small budget leaves cannot
+// take.
+TEST(TurningFriction, ABudgetThatPaysForNothingCertifiesTheStart) {
+  for (const double work : {0.0, 0.05, 30.0}) {
+    Ball ball({.friction = 0.5, .rolling_friction = 0.02});
+    ball.set(Vec3(2.0, 0.0, 0.0), Vec3(0.0, 4.0, 0.0));
+    TimeStepSettings settings{.accuracy = Accuracy::engineering()};
+    settings.budget.work = work;
+    TimeStepper stepper(ball.bodies, ball.finder, settings);
+    StepReport report;
+    stepper.step(ball.state, report);
+    EXPECT_LE(report.work, work);
+    if (work < 1.0) {
+      EXPECT_EQ(report.status, lcp::Status::kIterationLimit);
+      EXPECT_EQ(report.islands.at(0).solver, "none");
+      EXPECT_GT(report.islands.at(0).unit_free_residual, 0.0);
+      EXPECT_NE(report.result.detail.find("budget used up"), std::string::npos);
+    } else {
+      EXPECT_TRUE(lcp::is_solved(report.status));
+    }
+  }
+}
+
 /// A brick on the ground, pushed along x, whose friction direction is turned by `turned` from x.
 struct Anisotropic {
   static constexpr double kAlong = 0.2;
