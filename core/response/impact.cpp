@@ -46,6 +46,19 @@ std::vector<std::vector<int>> members_of_sets(const std::vector<int>& set_of_con
   return members;
 }
 
+void check_turning(const ContactSet& contacts) {
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const Material& material = contacts[i].material;
+    if (material.resists_turning()) {
+      throw std::invalid_argument("contact " + std::to_string(i) +
+                                  ": rolling and spinning friction must be 0 in an impact with "
+                                  "friction, got " +
+                                  number_text(material.rolling_friction) + " and " +
+                                  number_text(material.spinning_friction) + " m");
+    }
+  }
+}
+
 void note(int set, const std::string& text, std::string& detail) {
   if (!text.empty()) {
     detail += (detail.empty() ? "set " : "; set ") + std::to_string(set) + ": " + text;
@@ -179,6 +192,9 @@ void resolve_impact(const Bodies& bodies, const ContactSet& contacts,
   validate(contacts, static_cast<int>(bodies.size()));
   settings.validate(static_cast<int>(contacts.size()));
   check_dynamic(bodies, contacts);
+  if (settings.friction) {
+    check_turning(contacts);
+  }
   const std::unique_ptr<lcp::Solver> solver = lcp::make_solver(
       settings.friction ? settings.friction_solver : settings.solver, settings.lcp);
 

@@ -65,7 +65,7 @@ struct ImpactSettings {
   std::string solver = "lemke";
   lcp::SolverSettings lcp = {.tolerance = 1e-12};
   /// Coulomb's friction acts in the impact with the contacts' mu: kNewton and kReflections alone.
-  /// friction_impact.h.
+  /// friction_impact.h. Contacts that resist turning are refused.
   bool friction = false;
   /// Its solver, a name that lcp::make_solver() knows, that takes cones.
   std::string friction_solver = "auto";

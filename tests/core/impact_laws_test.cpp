@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <numbers>
+#include <stdexcept>
+#include <string>
 
 namespace signorini {
 namespace {
@@ -209,6 +211,21 @@ class FrictionLaw : public testing::TestWithParam<ImpactLaw> {};
 INSTANTIATE_TEST_SUITE_P(Both, FrictionLaw,
                          testing::Values(ImpactLaw::kNewton, ImpactLaw::kReflections),
                          [](const auto& tested) { return std::string(to_string(tested.param)); });
+
+TEST_P(FrictionLaw, ContactsThatResistTurningAreRefused) {
+  Scene scene;
+  scene.add(scenes::ball(), Vec3(0, 0, 0.5), {Vec3(0, 0, -2.0), Vec3::Zero()});
+  scene.add(scenes::fixed_body(), Vec3::Zero());
+  scene.touch(0, 1, Vec3::Zero(), Vec3::UnitZ(), 0.0).material.rolling_friction = 0.01;
+  try {
+    (void)resolve(scene, frictional(GetParam()));
+    FAIL() << "was taken";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("contact 0: rolling and spinning friction"),
+              std::string::npos)
+        << error.what();
+  }
+}
 
 TEST_P(FrictionLaw, ABallThatHitsTheFloorAtAnAngleSlidesOrGrips) {
   // m = 1, r = 1/2, J = 2/5 m r^2. Normal: f = (1 + e) s. Sliding: f_T = mu f. Gripping: the
