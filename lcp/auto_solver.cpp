@@ -199,8 +199,10 @@ Status AutoSolver::iterate(const Problem& problem, const Vector* warm_start,
     done = attempt(problem, chain_[k], most, deadline, result);
   }
   if (best_status_ == Status::kSolvedToRounding && best_solver_ != "sticking") {
-    attempt(problem, {"sticking", "the last digits", kSetsForLastDigits}, kSetsForLastDigits,
-            deadline, result);
+    const int most = settings_.max_iterations >= 0
+                         ? std::min(settings_.max_iterations, kSetsForLastDigits)
+                         : kSetsForLastDigits;
+    attempt(problem, {"sticking", "the last digits", kSetsForLastDigits}, most, deadline, result);
   }
   result.solver = "auto";
   if (!best_solver_.empty()) {

@@ -42,6 +42,7 @@ void count_ending(const StepReport& report, double time, Track& track) {
   }
   track.projection_energy += report.energy_change_projection;
   for (const Vec3& impulse : report.impulses) track.impulse += impulse.norm();
+  for (const Vec3& moment : report.moments) track.impulse += moment.norm();
   for (const JointReport& joint : report.joints) {
     track.impulse += joint.impulse.norm() + joint.moment.norm();
   }

@@ -1,7 +1,6 @@
 #include <signorini/core/model/contact_kinematics.h>
 #include <signorini/core/response/contact_selection.h>
 #include <signorini/core/response/position_projection.h>
-#include <signorini/core/response/time_stepper.h>
 
 #include <algorithm>
 #include <cmath>

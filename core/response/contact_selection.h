@@ -4,13 +4,12 @@
 #include <signorini/core/model/contact.h>
 #include <signorini/core/response/assembly.h>
 #include <signorini/core/response/sleeping.h>
+#include <signorini/core/response/time_step_settings.h>
 
 #include <cstdint>
 #include <vector>
 
 namespace signorini {
-
-struct TimeStepSettings;
 
 /// Which of the contacts found are in a step's problem, and how fast each may close: rules 2 and 3
 /// of TimeStepper. Keeps its memory from step to step.

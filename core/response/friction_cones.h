@@ -23,7 +23,12 @@ struct ConeProblem {
   std::vector<int> normal_row;       ///< of each contact
   std::vector<TangentFrame> frames;  ///< of each contact; used where mu > 0
   std::vector<double> friction;      ///< mu of each contact
-  AssemblyMemory memory;
+  /// What assembling needs beside its outcome, kept from step to step.
+  struct Memory {
+    std::vector<Velocity> velocities;  // of the bodies
+    BodyPairs joined;
+    NormalRows rows;  // its A is in the problem
+  } memory;
 
   [[nodiscard]] const lcp::FactoredMatrix& A() const {
     return std::get<lcp::FactoredMatrix>(problem.M);

@@ -77,13 +77,6 @@ void set_joint_bounds(std::span<const JointRow> rows, lcp::Problem& problem);
 void set_joint_bounds(const std::vector<Velocity>& velocities, std::span<const JointRow> rows,
                       lcp::Problem& problem);
 
-/// What assembling a step's problem needs beside its outcome, kept from step to step.
-struct AssemblyMemory {
-  std::vector<Velocity> velocities;  // of the bodies
-  BodyPairs joined;
-  NormalRows rows;  // its A is in the problem
-};
-
 /// What a joint did in a step, and how well it holds.
 struct JointReport {
   Vec3 impulse = Vec3::Zero();    ///< on A at P_A (on B: minus that), world, N s; over h: the force
