@@ -72,22 +72,32 @@ class Sticking::Workspace {
   std::vector<Contact> state_;
   std::vector<char> reversed_;  // sliding contacts whose slip changed its direction
   Vector x_, g_, r_, d_, h_, dx_, u_, z_, w_, best_z_;
-  Vector impulse_, velocity_;  // of the bodies, caller's units
+  std::vector<double> impulse_, velocity_;  // of the bodies, caller's units
   std::vector<long double> long_z_, long_w_, long_impulse_, long_velocity_;
   double best_ = kInfinity;
   double fine_ = 0.0;  // residuals up to this need not be known better
   int factorizations_ = 0;
 };
 
+namespace {
+
+/// w = A z. @param impulse,velocity of the bodies: memory
+template <typename Scalar>
+void multiply(const FactoredMatrix& A, const Scalar* z, std::vector<Scalar>& impulse,
+              std::vector<Scalar>& velocity, Scalar* w) {
+  impulse.resize(A.degrees_of_freedom());
+  velocity.resize(A.degrees_of_freedom());
+  A.transpose_times(z, impulse.data());
+  A.apply_inverse_mass(impulse.data(), velocity.data());
+  A.times(velocity.data(), z, w);
+}
+
+}  // namespace
+
 /// The residuals of z by the caller's own numbers, w_ at hand afterwards.
 double Sticking::Workspace::measure_caller(const Vector& z) {
-  const auto& A = std::get<FactoredMatrix>(problem_->M);
-  impulse_.resize(A.degrees_of_freedom());
-  velocity_.resize(A.degrees_of_freedom());
   w_.resize(z.size());
-  A.transpose_times(z.data(), impulse_.data());
-  A.apply_inverse_mass(impulse_.data(), velocity_.data());
-  A.times(velocity_.data(), z.data(), w_.data());
+  multiply(std::get<FactoredMatrix>(problem_->M), z.data(), impulse_, velocity_, w_.data());
   w_ += problem_->q;
   const double residual = groups_.residual(*problem_, z, w_, fine_);
   if (residual < best_) {
@@ -99,14 +109,10 @@ double Sticking::Workspace::measure_caller(const Vector& z) {
 
 /// The same with w_ to all its digits: beside a large z its product in double has none.
 double Sticking::Workspace::measure_exactly(const Vector& z) {
-  const auto& A = std::get<FactoredMatrix>(problem_->M);
   long_z_.assign(z.begin(), z.end());
   long_w_.resize(long_z_.size());
-  long_impulse_.resize(A.degrees_of_freedom());
-  long_velocity_.resize(A.degrees_of_freedom());
-  A.transpose_times(long_z_.data(), long_impulse_.data());
-  A.apply_inverse_mass(long_impulse_.data(), long_velocity_.data());
-  A.times(long_velocity_.data(), long_z_.data(), long_w_.data());
+  multiply(std::get<FactoredMatrix>(problem_->M), long_z_.data(), long_impulse_, long_velocity_,
+           long_w_.data());
   for (Index i = 0; i < z.size(); ++i) {
     w_[i] = static_cast<double>(long_w_[i] + problem_->q[i]);
   }

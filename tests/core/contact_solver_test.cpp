@@ -41,6 +41,15 @@ struct Stack {
     }
     return free;
   }
+  /// @return the state with weight and impulses
+  [[nodiscard]] State solve(ContactSolver& solver, ContactSolution& solution) {
+    ContactSet contacts;
+    finder.find(state, 0.01, contacts);
+    State after = with_weight();
+    solver.solve(bodies, contacts, allowances(bodies, state, contacts, kStep, 1e-6, 0.0), after,
+                 solution);
+    return after;
+  }
 };
 
 class Solves : public testing::TestWithParam<FrictionModel> {};
@@ -58,12 +67,7 @@ TEST_P(Solves, GiveTheTimeSteppersImpulsesToTheBit) {
   StepReport report;
   ContactSolution solution;
   for (int i = 0; i < 5; ++i) {  // later ones start warm
-    ContactSet contacts;
-    stack.finder.find(stack.state, 0.01, contacts);
-    State after = stack.with_weight();
-    solver.solve(stack.bodies, contacts,
-                 allowances(stack.bodies, stack.state, contacts, kStep, 1e-6, 0.0), after,
-                 solution);
+    const State after = stack.solve(solver, solution);
     stepper.step(stack.state, report);
     ASSERT_EQ(solution.status, report.status);
     ASSERT_EQ(solution.impulses, report.impulses) << "step " << i;
@@ -88,12 +92,7 @@ TEST(ContactSolver, TheDialIsTheTimeSteppers) {
     StepReport report;
     ContactSolution solution;
     for (int i = 0; i < 5; ++i) {
-      ContactSet contacts;
-      stack.finder.find(stack.state, 0.01, contacts);
-      State after = stack.with_weight();
-      solver.solve(stack.bodies, contacts,
-                   allowances(stack.bodies, stack.state, contacts, kStep, 1e-6, 0.0), after,
-                   solution);
+      (void)stack.solve(solver, solution);
       stepper.step(stack.state, report);
       ASSERT_EQ(solution.impulses, report.impulses) << "step " << i;
       EXPECT_EQ(solution.work, report.work);
