@@ -1,15 +1,13 @@
 #include "bench/collision_command.h"
 
-#include <signorini/lcp/io/whole_file.h>
-
 #include "bench/broad_phase_study.h"
 #include "bench/contact_study.h"
 #include "bench/contact_time_study.h"
 #include "bench/narrow_phase_study.h"
+#include "bench/write_csv.h"
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <fmt/format.h>
 #include <iostream>
 #include <string>
 
@@ -18,15 +16,6 @@ namespace {
 
 constexpr int kClaimsHold = 0;
 constexpr int kWrongClaim = 1;
-
-void write_csv(const std::string& folder, const std::string& name, const std::string& csv) {
-  if (folder.empty()) {
-    return;
-  }
-  const std::filesystem::path file = std::filesystem::path(folder) / (name + ".csv");
-  lcp::write_whole_file(file, csv);
-  fmt::print("written: {}\n", file.string());
-}
 
 }  // namespace
 

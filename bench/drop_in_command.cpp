@@ -2,7 +2,8 @@
 
 #include <signorini/integrations/bullet/example_scenes/drop_in_run.h>
 #include <signorini/integrations/bullet/example_scenes/example_scenes.h>
-#include <signorini/lcp/io/whole_file.h>
+
+#include "bench/write_csv.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -87,11 +88,7 @@ int DropInCommand::run() const {
                          is_ours ? run.counters.not_solved() : 0);
     }
   }
-  if (!options_->out.empty()) {
-    const std::filesystem::path file = std::filesystem::path(options_->out) / "drop-in.csv";
-    lcp::write_whole_file(file, csv);
-    fmt::print("written: {}\n", file.string());
-  }
+  write_csv(options_->out, "drop-in", csv);
   return not_solved == 0 ? kClaimsHold : kWrongClaim;
 }
 

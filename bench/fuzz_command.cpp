@@ -1,9 +1,8 @@
 #include "bench/fuzz_command.h"
 
-#include <signorini/lcp/io/whole_file.h>
-
 #include "bench/child_process.h"
 #include "bench/fuzz_study.h"
+#include "bench/write_csv.h"
 
 #include <CLI/CLI.hpp>
 #include <csignal>
@@ -68,10 +67,7 @@ int FuzzCommand::run() const {
   std::signal(SIGINT, [](int) { stop_children(); });
   std::signal(SIGTERM, [](int) { stop_children(); });
   const FuzzCounts counts = run_fuzz_study(options_->study, std::cout);
-  if (!folder.empty()) {
-    lcp::write_whole_file(folder / "fuzz.csv", counts.to_csv());
-    fmt::print("written: {}\n", (folder / "fuzz.csv").string());
-  }
+  write_csv(folder, "fuzz", counts.to_csv());
   if (counts.is_interrupted) {
     return kInterrupted;
   }

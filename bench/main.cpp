@@ -1,6 +1,5 @@
 #include <signorini/lcp/io/dump_recorder.h>
 #include <signorini/lcp/io/input_error.h>
-#include <signorini/lcp/io/whole_file.h>
 
 #include "bench/fuzz_command.h"
 #include "bench/impact_study.h"
@@ -10,6 +9,7 @@
 #include "bench/scaling_study.h"
 #include "bench/sequence_command.h"
 #include "bench/tradeoff_command.h"
+#include "bench/write_csv.h"
 
 #ifdef SIGNORINI_HAS_COLLISION
 #include "bench/collision_command.h"
@@ -68,15 +68,6 @@ CLI::App* add_study(CLI::App& app, const std::string& name, const std::string& w
   return study;
 }
 
-void write_csv(const StudyOptions& options, const std::string& name, const std::string& csv) {
-  if (options.out.empty()) {
-    return;
-  }
-  const std::filesystem::path file = std::filesystem::path(options.out) / (name + ".csv");
-  lcp::write_whole_file(file, csv);
-  fmt::print("written: {}\n", file.string());
-}
-
 /// The folder is made before the study runs, so that a wrong name does not cost the run.
 void make_folder(const StudyOptions& options) {
   if (!options.out.empty()) {
@@ -107,7 +98,7 @@ int run_exactness([[maybe_unused]] const StudyOptions& options) {
   const Dump dump;
   const ExactnessCounts counts = run_exactness_study(
       {.problems = options.count, .seed = options.seed, .recorder = dump.recorder()}, std::cout);
-  write_csv(options, "exactness", counts.to_csv());
+  write_csv(options.out, "exactness", counts.to_csv());
   return counts.wrong() == 0 ? kClaimsHold : kWrongClaim;
 #else
   fmt::print(stderr, "signorini-bench exactness: this build has no GMP (SIGNORINI_WITH_GMP=OFF)\n");
@@ -148,7 +139,7 @@ int run_impacts(const StudyOptions& options, const ImpactSetOptions& set) {
     }
   }
   const ImpactCounts counts = run_impact_study(study, std::cout);
-  write_csv(options, "impacts", counts.to_csv());
+  write_csv(options.out, "impacts", counts.to_csv());
   return counts.passed() ? kClaimsHold : kWrongClaim;
 }
 
@@ -161,14 +152,14 @@ int run_laws(const StudyOptions& options) {
 #endif
   const std::vector<LawRow> rows =
       run_laws_study({.impacts = options.count, .seed = options.seed}, laws, std::cout);
-  write_csv(options, "laws", laws_csv(rows));
+  write_csv(options.out, "laws", laws_csv(rows));
   return kClaimsHold;
 }
 
 int run_scaling(const StudyOptions& options) {
   make_folder(options);
   const ScalingReport report = run_scaling_study({.max_rows = options.count}, std::cout);
-  write_csv(options, "scaling", report.to_csv());
+  write_csv(options.out, "scaling", report.to_csv());
   return report.passed() ? kClaimsHold : kWrongClaim;
 }
 

@@ -6,6 +6,7 @@
 #include "bench/contact_families.h"
 #include "bench/peers_study.h"
 #include "bench/peers_table.h"
+#include "bench/write_csv.h"
 
 #ifdef SIGNORINI_PEER_BULLET
 #include "bench/bullet_sets.h"
@@ -244,11 +245,7 @@ int BulletSetsCommand::run() const {
       "impulses that were left / the fastest call in us.\nOurs includes reading Bullet's contacts, "
       "assembly, certificate and "
       "writing back; Bullet's its own setup and (idle) friction rows.\n");
-  if (!o.out.empty()) {
-    const std::filesystem::path file = std::filesystem::path(o.out) / "bullet-sets.csv";
-    lcp::write_whole_file(file, bullet_sets_csv(runs));
-    fmt::print("written: {}\n", file.string());
-  }
+  write_csv(o.out, "bullet-sets", bullet_sets_csv(runs));
   return children_are_stopped() ? kInterrupted : kClaimsHold;
 #else
   fmt::print(stderr, "signorini-bench bullet-sets: this build has no Bullet (libbullet-dev)\n");

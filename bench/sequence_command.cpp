@@ -1,9 +1,9 @@
 #include "bench/sequence_command.h"
 
 #include <signorini/lcp/io/dump_recorder.h>
-#include <signorini/lcp/io/whole_file.h>
 
 #include "bench/sequence_study.h"
+#include "bench/write_csv.h"
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -53,10 +53,7 @@ int SequenceCommand::run() const {
   const auto recorder = lcp::dump_recorder_from_environment();
   options_->study.lcp.recorder = recorder.get();
   const SequenceCounts counts = run_sequence_study(options_->study, std::cout);
-  if (!folder.empty()) {
-    lcp::write_whole_file(folder / "sequence.csv", counts.to_csv());
-    fmt::print("written: {}\n", (folder / "sequence.csv").string());
-  }
+  write_csv(folder, "sequence", counts.to_csv());
   if (recorder != nullptr) {
     fmt::print(stderr, "{}\n", summary(*recorder));
   }

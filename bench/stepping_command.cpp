@@ -1,13 +1,11 @@
 #include "bench/stepping_command.h"
 
-#include <signorini/lcp/io/whole_file.h>
-
 #include "bench/extremes_study.h"
 #include "bench/stacks_study.h"
+#include "bench/write_csv.h"
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <fmt/format.h>
 #include <iostream>
 #include <string>
 #include <vector>
@@ -31,15 +29,6 @@ std::vector<Contestant> contestants() {
   }
 #endif
   return all;
-}
-
-void write_csv(const std::string& folder, const std::string& name, const std::string& csv) {
-  if (folder.empty()) {
-    return;
-  }
-  const std::filesystem::path file = std::filesystem::path(folder) / name;
-  lcp::write_whole_file(file, csv);
-  fmt::print("written: {}\n", file.string());
 }
 
 }  // namespace
@@ -94,12 +83,12 @@ int SteppingCommand::run() const {
   if (extremes_->parsed()) {
     const ExtremesReport report =
         run_extremes_study(options_->extremes, extreme_cells(), extreme_contestants(), std::cout);
-    write_csv(options_->out, "extremes.csv", report.to_csv());
+    write_csv(options_->out, "extremes", report.to_csv());
     return report.passed() ? kClaimsHold : kWrongClaim;
   }
   const StacksReport report =
       run_stacks_study(options_->stacks, stacks_scenes(), contestants(), std::cout);
-  write_csv(options_->out, "stacks.csv", report.to_csv());
+  write_csv(options_->out, "stacks", report.to_csv());
   return report.passed() ? kClaimsHold : kWrongClaim;
 }
 
