@@ -67,8 +67,10 @@ class IncludeWalk {
     }
     tinyxml2::XMLDocument document;
     if (document.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS) return;
+    const XMLElement* root = document.RootElement();
+    if (root == nullptr) return;  // comments alone: libsdformat refuses it
     open_.push_back(file);
-    walk(*document.RootElement(), file.string());
+    walk(*root, file.string());
     open_.pop_back();
   }
 

@@ -49,6 +49,12 @@ TEST_F(SdfIncludes, AFileThatIncludesItselfIsNamed) {
   EXPECT_NAMES(refusal_of("m.sdf"), "includes itself");
 }
 
+TEST_F(SdfIncludes, AFileWithoutAnElementIsRefused) {
+  folder_.write("nothing.sdf", "<!-- nothing -->");
+  write("world.sdf", "<world name=\"w\">" + include("nothing.sdf", "a") + "</world>");
+  EXPECT_NAMES(refusal_of("world.sdf"), "nothing.sdf");
+}
+
 TEST_F(SdfIncludes, ALoopThroughOtherFilesIsNamed) {
   write_model("a.sdf", include("b.sdf", "b"));
   write_model("b.sdf", include("a.sdf", "a"));
