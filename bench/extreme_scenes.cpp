@@ -31,21 +31,12 @@ struct Pile {
 
 /// Upright, as high as wide, about the origin.
 collision::ConvexHull prism(int sides, double edge) {
-  std::vector<Vec3> vertices;
-  std::vector<std::vector<int>> faces(2);
-  for (const double z : {-0.5 * edge, 0.5 * edge}) {
-    for (int k = 0; k < sides; ++k) {
-      const double angle = 2.0 * std::numbers::pi * k / sides;
-      vertices.emplace_back(0.5 * edge * std::cos(angle), 0.5 * edge * std::sin(angle), z);
-    }
-  }
+  std::vector<Eigen::Vector2d> corners;
   for (int k = 0; k < sides; ++k) {
-    const int next = (k + 1) % sides;
-    faces[0].push_back(sides - 1 - k);
-    faces[1].push_back(sides + k);
-    faces.push_back({k, next, sides + next, sides + k});
+    const double angle = 2.0 * std::numbers::pi * k / sides;
+    corners.emplace_back(0.5 * edge * std::cos(angle), 0.5 * edge * std::sin(angle));
   }
-  return collision::make_hull(std::move(vertices), std::move(faces));
+  return collision::make_prism(corners, -0.5 * edge, 0.5 * edge);
 }
 
 Mat3 moments(double mass, double edge, double ratio) {

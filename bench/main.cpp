@@ -16,6 +16,10 @@
 #include "bench/stepping_command.h"
 #endif
 
+#ifdef SIGNORINI_HAS_CLP
+#include "bench/limit_command.h"
+#endif
+
 #ifdef SIGNORINI_HAS_BULLET
 #include "bench/bullet_laws.h"
 #endif
@@ -221,6 +225,9 @@ int run(int argc, char** argv) {
   const CollisionCommand collision(app);
   const SteppingCommand stepping(app);
 #endif
+#ifdef SIGNORINI_HAS_CLP
+  const LimitCommand limit(app);
+#endif
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -249,6 +256,11 @@ int run(int argc, char** argv) {
   }
   if (stepping.is_asked()) {
     return stepping.run();
+  }
+#endif
+#ifdef SIGNORINI_HAS_CLP
+  if (limit.is_asked()) {
+    return limit.run();
   }
 #endif
   if (sequence.is_asked()) {

@@ -84,7 +84,13 @@ class BulletPlayer final : public ScenePlayer {
   [[nodiscard]] lcp::Status status() const override { return lcp::Status::kNotRun; }
 
  private:
+  /// @throws std::invalid_argument for what Bullet would take for another body
   void add(const Body& body, const BodyState& state, const collision::Collider& collider) {
+    if (!collider.local.position.isZero() || collider.local.orientation.w() != 1.0 ||
+        !body.inertia.isDiagonal()) {
+      throw std::invalid_argument(
+          "scene player: Bullet is given bodies with one shape about their principal axes only");
+    }
     shapes_.push_back(bullet_shape(collider.shape));
     btRigidBody::btRigidBodyConstructionInfo info(body.is_dynamic() ? body.mass : 0.0, nullptr,
                                                   shapes_.back().get(),

@@ -3,6 +3,9 @@
 #include <signorini/collision/collision_world.h>
 
 #include "bench/thread_time.h"
+#ifdef SIGNORINI_HAS_CLP
+#include "bench/limit_study.h"
+#endif
 
 #include <algorithm>
 #include <cmath>
@@ -80,11 +83,18 @@ std::string StacksReport::to_csv() const {
 }
 
 std::vector<SteppedScene> stacks_scenes() {
-  return {stack_scene(100, 1.0 / 60.0, 60.0),  stack_scene(100, 1.0 / 240.0, 60.0),
-          pyramid_scene(20, 1.0 / 60.0, 10.0), heavy_scene(1e3, 1.0 / 60.0, 10.0),
-          heavy_scene(1e6, 1.0 / 60.0, 10.0),  heavy_scene(1e9, 1.0 / 60.0, 10.0),
-          slope_scene(0.45, 1.0 / 60.0, 2.0),  slope_scene(1.0, 1.0 / 60.0, 2.0),
-          rolling_scene(1.0 / 60.0, 2.0)};
+  std::vector<SteppedScene> scenes{
+      stack_scene(100, 1.0 / 60.0, 60.0),  stack_scene(100, 1.0 / 240.0, 60.0),
+      pyramid_scene(20, 1.0 / 60.0, 10.0), heavy_scene(1e3, 1.0 / 60.0, 10.0),
+      heavy_scene(1e6, 1.0 / 60.0, 10.0),  heavy_scene(1e9, 1.0 / 60.0, 10.0),
+      slope_scene(0.45, 1.0 / 60.0, 2.0),  slope_scene(1.0, 1.0 / 60.0, 2.0),
+      rolling_scene(1.0 / 60.0, 2.0)};
+#ifdef SIGNORINI_HAS_CLP
+  for (const Masonry& structure : masonry_scenes()) {
+    scenes.push_back(structure(1.05 * critical_friction(structure(1.0)).friction));
+  }
+#endif
+  return scenes;
 }
 
 StacksReport run_stacks_study(const StacksOptions& options, const std::vector<SteppedScene>& scenes,

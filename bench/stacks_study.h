@@ -37,7 +37,8 @@ struct StacksReport {
   [[nodiscard]] std::string to_csv() const;
 };
 
-/// The scenes of the study: stacks, a pyramid, heavy on light, slopes, a ball that begins to roll.
+/// The scenes of the study: stacks, a pyramid, heavy on light, slopes, a ball that begins to roll;
+/// with Clp the card house and the arch at 1.05 mu_c.
 [[nodiscard]] std::vector<SteppedScene> stacks_scenes();
 
 /// Every contestant on every scene, one after the other.

@@ -210,4 +210,22 @@ ConvexHull make_hull(std::vector<Vec3> vertices, std::vector<std::vector<int>> f
   return {std::make_shared<const HullData>(Maker(std::move(vertices), std::move(faces)).make())};
 }
 
+ConvexHull make_prism(const std::vector<Eigen::Vector2d>& corners, double bottom, double top) {
+  const int n = static_cast<int>(corners.size());
+  std::vector<Vec3> vertices;
+  std::vector<std::vector<int>> faces(2);
+  for (const double z : {bottom, top}) {
+    for (const Eigen::Vector2d& corner : corners) {
+      vertices.emplace_back(corner.x(), corner.y(), z);
+    }
+  }
+  for (int i = 0; i < n; ++i) {
+    const int next = (i + 1) % n;
+    faces[0].push_back(n - 1 - i);
+    faces[1].push_back(n + i);
+    faces.push_back({i, next, n + next, n + i});
+  }
+  return make_hull(std::move(vertices), std::move(faces));
+}
+
 }  // namespace signorini::collision

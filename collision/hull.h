@@ -49,4 +49,10 @@ struct HullData {
 /// Cost: (vertices) x (faces).
 [[nodiscard]] ConvexHull make_hull(std::vector<Vec3> vertices, std::vector<std::vector<int>> faces);
 
+/// The prism over a convex polygon, from z = bottom to z = top.
+/// @param corners x, y, counter-clockwise, m
+/// @throws std::invalid_argument as make_hull().
+[[nodiscard]] ConvexHull make_prism(const std::vector<Eigen::Vector2d>& corners, double bottom,
+                                    double top);
+
 }  // namespace signorini::collision

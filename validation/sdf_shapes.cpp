@@ -99,25 +99,6 @@ std::vector<Vec2> corners_of(std::vector<Vec2> points) {
   return points;
 }
 
-/// A prism from z = 0 to the height, as in Gazebo.
-collision::ConvexHull prism(const std::vector<Vec2>& corners, double height) {
-  const int n = static_cast<int>(corners.size());
-  std::vector<Vec3> vertices;
-  std::vector<int> bottom;
-  std::vector<int> top;
-  std::vector<std::vector<int>> faces;
-  for (int i = 0; i < n; ++i) vertices.emplace_back(corners[i].x(), corners[i].y(), 0.0);
-  for (int i = 0; i < n; ++i) {
-    vertices.emplace_back(corners[i].x(), corners[i].y(), height);
-    bottom.push_back(n - 1 - i);
-    top.push_back(n + i);
-    faces.push_back({i, (i + 1) % n, n + (i + 1) % n, n + i});
-  }
-  faces.push_back(bottom);
-  faces.push_back(top);
-  return collision::make_hull(std::move(vertices), std::move(faces));
-}
-
 collision::Shape read_polyline(const sdf::ElementPtr& polyline, const ShapeUse& use) {
   if (polyline->GetNextElement("polyline") != nullptr) {
     throw InputError(use.where + ": <polyline>: several in one <geometry> are not supported");
@@ -143,7 +124,7 @@ collision::Shape read_polyline(const sdf::ElementPtr& polyline, const ShapeUse& 
     }
   }
   try {
-    return prism(corners, height);
+    return collision::make_prism(corners, 0.0, height);
   } catch (const std::invalid_argument& error) {
     throw InputError(use.where + ": <polyline>: " + error.what());
   }

@@ -217,6 +217,18 @@ TEST(Shape, SupportBoundsAndRadiusHoldEverySurfacePointAndNoMore) {
   }
 }
 
+TEST(Prism, OverARectangleIsABox) {
+  const ConvexHull prism = make_prism({{-0.5, -0.2}, {0.5, -0.2}, {0.5, 0.2}, {-0.5, 0.2}}, 1, 3);
+  EXPECT_EQ(prism.data->edges.size(), 12u);
+  EXPECT_NEAR((prism.data->centre - Vec3(0, 0, 2)).norm(), 0.0, 1e-15);
+  MassProperties moved = mass_properties(Box{{0.5, 0.2, 1.0}}, 3.0);
+  moved.centre = prism.data->centre;
+  expect_same(mass_properties(prism, 3.0), moved, 1e-14);
+  EXPECT_THROW((void)make_prism({{0, 0}, {1, 0}}, 0, 1), std::invalid_argument);
+  EXPECT_THROW((void)make_prism({{0, 0}, {0, 1}, {1, 0}}, 0, 1),
+               std::invalid_argument);  // clockwise
+}
+
 #ifdef SIGNORINI_WITH_QHULL
 TEST(HullOfPoints, KeepsTheCornersAndMergesWhatIsFlat) {
   // The corners of a cube, points in its faces, edges and inside.
