@@ -65,6 +65,7 @@ CollisionCommand::CollisionCommand(CLI::App& app) : options_(std::make_unique<Op
       ->add_option("--repeats", o.narrow_phase.repeats, "Of all poses; the least time counts")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  narrow_phase_->add_option("--pair", o.narrow_phase.pair, "One pair alone, such as hull-hull");
   for (CLI::App* study : {contacts_, contact_times_, broad_phase_, narrow_phase_}) {
     study->add_option("--out", o.out, "Folder for the CSV, made if absent (default: print only)");
   }

@@ -16,6 +16,7 @@
 #include <iterator>
 #include <limits>
 #include <ostream>
+#include <stdexcept>
 
 namespace signorini::bench {
 namespace {
@@ -264,7 +265,12 @@ NarrowPhaseReport run_narrow_phase_study(const NarrowPhaseOptions& options, std:
   NarrowPhaseReport report;
   out << fmt::format("{:<14}{:<16}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "pair", "", "ns", "points",
                      "valid", "corners", "area");
+  std::string known;
   for (const Pair& pair : pairs) {
+    known += (known.empty() ? "" : ", ") + std::string(pair.name);
+    if (!options.pair.empty() && options.pair != pair.name) {
+      continue;
+    }
     Random random(options.seed);
     std::vector<PosePair> poses;
     poses.reserve(options.poses);
@@ -287,6 +293,9 @@ NarrowPhaseReport run_narrow_phase_study(const NarrowPhaseOptions& options, std:
       out.flush();
       report.rows.push_back(row);
     }
+  }
+  if (report.rows.empty()) {
+    throw std::invalid_argument("pair: must be one of " + known + ", got " + options.pair);
   }
   return report;
 }

@@ -11,6 +11,7 @@ struct NarrowPhaseOptions {
   int poses = 1000;   ///< of each pair, > 0
   int repeats = 200;  ///< of all poses; the time is the least, > 0
   std::uint64_t seed = 1;
+  std::string pair = {};  ///< "hull-hull": this one alone; empty: every pair
 };
 
 /// One narrow phase on one pair of shapes.
@@ -35,6 +36,7 @@ struct NarrowPhaseReport {
 /// lie in their shapes to 1e-3 of the size, and its normal parts the shapes as well as the best
 /// does, to the same. Ours stands there twice: with all points, and reduced to 4 of a patch, so
 /// that the area says what the reduction loses.
+/// @throws std::invalid_argument for an unknown pair, naming those there are
 [[nodiscard]] NarrowPhaseReport run_narrow_phase_study(const NarrowPhaseOptions& options,
                                                        std::ostream& out);
 

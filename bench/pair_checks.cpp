@@ -106,9 +106,10 @@ class Judge {
       default: return allowed_ + preference_;
     }
   }
-  void off_by(PairProperty property, double metres) {
+  void off_by(PairProperty property, double metres) { off_by(property, metres, allowed(property)); }
+  void off_by(PairProperty property, double metres, double allowed) {
     double& worst = verdict_[static_cast<std::size_t>(property)];
-    const double off = metres / allowed(property);
+    const double off = metres / allowed;
     worst = std::isnan(off) ? kInfinity : std::max(worst, off);
   }
   void fail(PairProperty property) { verdict_[static_cast<std::size_t>(property)] = kInfinity; }
@@ -157,7 +158,10 @@ class Judge {
     if (d_ > margin_) {
       off_by(PairProperty::kNothingBeyond, d_ - margin_);
     }
-    off_by(PairProperty::kCertified, std::abs(separation(pair_, N) - least));
+    // N may part the shapes by the preference less than the best direction does, and the least gap
+    // be the preference more than the distance.
+    off_by(PairProperty::kCertified, std::abs(separation(pair_, N) - least),
+           allowed_ + 2.0 * preference_);
     off_by(PairProperty::kCertified, std::abs(d_ - least));
     for (const Vec3& n : directions_about(N, random_)) {
       const double s = separation(pair_, n);

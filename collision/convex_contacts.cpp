@@ -313,8 +313,9 @@ void find_contacts_on_face(const Convex& a, const Convex& b, const FacingFace& f
   other.facet(-outward, incident);
   clip_facet(incident, reference, slack, points);
 
-  // Rounding of the heights must not lose the one contact of shapes that are margin apart.
-  const double highest = std::max(margin, face.separation);
+  // Rounding of the heights must not lose the contacts of shapes that are margin apart.
+  const double last_digits = 16.0 * std::numeric_limits<double>::epsilon() * (a.size() + b.size());
+  const double highest = std::max(margin, face.separation + last_digits);
   FaceContacts found{face.of_a, outward, other.rounding(), highest, contacts};
   const std::size_t first = contacts.size();
   for (const FacetPoint& point : points) {

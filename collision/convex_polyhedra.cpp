@@ -229,7 +229,7 @@ void HullCore::facet(const Vec3& n, Facet& facet) const {
   const int count = static_cast<int>(data_->faces.size());
   int face = 0;
   double highest = local.dot(data_->normals[0]);
-  for (int f = 1; f < count; ++f) {
+  for (int f = 1; f < count && highest < 1.0 - kSame; ++f) {
     const double along = local.dot(data_->normals[f]);
     if (along > highest) {
       highest = along;

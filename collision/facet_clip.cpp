@@ -50,8 +50,9 @@ FacetPoint over(const Facet& reference, const Vec3& on_incident, const FacetCorn
 /// polygon, or (number >= 0) of the reference polygon.
 struct ClipCorner {
   Vec3 point = Vec3::Zero();
-  FacetCorner what;
-  int on_reference = -1;  ///< the reference edge that the corner lies on
+  int corner_of_incident = -1;  ///< -1: a crossing
+  Feature feature = 0;          ///< of the incident polygon there
+  int on_reference = -1;        ///< the reference edge that the corner lies on
   int corner_of_reference = -1;
   Feature edge = 0;
   int reference_edge = -1;
@@ -70,12 +71,11 @@ ClipCorner crossing(const ClipCorner& from, const Vec3& point, int k, const Face
                     int reference_count) {
   ClipCorner result;
   result.point = point;
-  result.what.surface = LocalSurface::vertex();
   result.on_reference = k;
   if (from.reference_edge < 0) {
-    result.what.feature = from.edge;
+    result.feature = from.edge;
   } else {
-    result.what.feature = incident.face;
+    result.feature = incident.face;
     result.corner_of_reference = shared_corner(from.reference_edge, k, reference_count);
   }
   return result;
@@ -94,11 +94,12 @@ void clip_at(const Facet& incident, const Facet& reference, int k, double slack,
   const Side side(reference, k);
   const int sides = static_cast<int>(reference.corners.size());
   clipped.clear();
+  double there = polygon.empty() ? 0.0 : side.excess(polygon.front().point);
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const ClipCorner& from = polygon[i];
     const ClipCorner& to = polygon[i + 1 == polygon.size() ? 0 : i + 1];
-    const double here = side.excess(from.point);
-    const double there = side.excess(to.point);
+    const double here = there;
+    there = side.excess(to.point);
     const auto cross = [&] {
       return crossing(from, from.point + here / (here - there) * (to.point - from.point), k,
                       incident, sides);
@@ -125,11 +126,12 @@ void clip_polygons(const Facet& incident, const Facet& reference, double slack,
   thread_local Polygons polygons;
   std::vector<ClipCorner>& polygon = polygons.polygon;
   polygon.clear();
-  for (const FacetCorner& corner : incident.corners) {
+  for (std::size_t i = 0; i < incident.corners.size(); ++i) {
     ClipCorner& added = polygon.emplace_back();
-    added.point = corner.point;
-    added.what = corner;
-    added.edge = corner.edge;
+    added.point = incident.corners[i].point;
+    added.corner_of_incident = static_cast<int>(i);
+    added.feature = incident.corners[i].feature;
+    added.edge = incident.corners[i].edge;
   }
   for (int k = 0; k < static_cast<int>(reference.corners.size()); ++k) {
     clip_at(incident, reference, k, slack, polygons);
@@ -141,7 +143,11 @@ void clip_polygons(const Facet& incident, const Facet& reference, double slack,
     } else if (corner.on_reference >= 0) {
       feature = reference.corners[corner.on_reference].edge;
     }
-    points.push_back(over(reference, corner.point, corner.what, feature));
+    const LocalSurface surface = corner.corner_of_incident < 0
+                                     ? LocalSurface::vertex()
+                                     : incident.corners[corner.corner_of_incident].surface;
+    points.push_back(
+        over(reference, corner.point, {corner.point, corner.feature, 0, surface}, feature));
   }
 }
 

@@ -59,14 +59,16 @@ class Polytope {
     starting_.assign(kMostPoints, -1);
   }
 
-  /// Leaves the directions in `found`.
-  void expand() {
+  /// Leaves the directions in `found`. False: it ended before the least was certain.
+  bool expand() {
     if (!start()) {
-      return;
+      return true;
     }
+    bool is_certain = false;
     while (static_cast<int>(points_.size()) < kMostPoints) {
       const int nearest = nearest_face();
-      if (nearest < 0 || faces_[nearest].offset > least_ + tolerance_) {
+      is_certain = nearest < 0 || faces_[nearest].offset > least_ + tolerance_;
+      if (is_certain) {
         break;
       }
       const Vec3 u = faces_[nearest].normal;
@@ -84,6 +86,7 @@ class Polytope {
           [](const Axis& p, const Axis& q) { return p.separation > q.separation; });
       std::rotate(place, axis, axis + 1);
     }
+    return is_certain;
   }
 
  private:
@@ -270,9 +273,9 @@ class Polytope {
 
 }  // namespace
 
-void penetration(const Convex& a, const Convex& b, double tolerance, std::vector<Axis>& axes) {
+bool penetration(const Convex& a, const Convex& b, double tolerance, std::vector<Axis>& axes) {
   thread_local PolytopeMemory memory;
-  Polytope(a, b, tolerance, memory, axes).expand();
+  return Polytope(a, b, tolerance, memory, axes).expand();
 }
 
 }  // namespace signorini::collision

@@ -21,11 +21,12 @@ struct Axis {
 /// distance, so that cores that are a little apart are no special case.
 ///
 /// Minus the largest separation is then the least translation, to tolerance. After 256 points it
-/// ends with the best direction so far. Allocates nothing once no polytope is larger than an
-/// earlier one of this thread.
+/// ends with the best direction so far and returns false. Allocates nothing once no polytope is
+/// larger than an earlier one of this thread.
 /// @param tolerance m, > 0
 /// @param axes replaced
 /// @pre the difference has volume: not both cores are points or segments
-void penetration(const Convex& a, const Convex& b, double tolerance, std::vector<Axis>& axes);
+[[nodiscard]] bool penetration(const Convex& a, const Convex& b, double tolerance,
+                               std::vector<Axis>& axes);
 
 }  // namespace signorini::collision

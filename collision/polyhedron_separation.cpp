@@ -51,6 +51,16 @@ struct FaceCandidate {
   double separation;
 };
 
+/// Does p hold a point of its frame?
+bool is_inside(const Polyhedron& p, const Vec3& point) {
+  for (int f = 0; f < p.faces; ++f) {
+    if (p.shape->normals[f].dot(point) > p.offsets[f]) {
+      return false;
+    }
+  }
+  return true;
+}
+
 /// What is known of the faces of one polyhedron.
 struct FaceTable {
   std::vector<FaceCandidate> near;  ///< may be within the tolerance of the best of both shapes
@@ -64,15 +74,8 @@ struct FaceTable {
   }
   /// Do the shapes overlap for sure: that vertex, or the deepest one, lies inside.
   [[nodiscard]] bool holds_a_vertex(const Polyhedron& p, const Vec3& deepest) const {
-    if (std::all_of(heights.begin(), heights.end(), [](double h) { return h <= 0.0; })) {
-      return true;
-    }
-    for (int f = 0; f < p.faces; ++f) {
-      if (p.shape->normals[f].dot(deepest) > p.offsets[f]) {
-        return false;
-      }
-    }
-    return true;
+    return std::all_of(heights.begin(), heights.end(), [](double h) { return h <= 0.0; }) ||
+           is_inside(p, deepest);
   }
 };
 
@@ -100,10 +103,8 @@ FaceAxis best_face(const Polyhedron& p, const Polyhedron& q, double known, doubl
   double highest = -kInfinity;
   for (int f = 0; f < p.faces; ++f) {
     const double height = normals[f].dot(relative.shift) - p.offsets[f];
-    if (height > highest) {
-      highest = height;
-      first = f;
-    }
+    first = height > highest ? f : first;
+    highest = height > highest ? height : highest;
   }
   look(first);
   table.measure(p, best.nearest);
@@ -236,6 +237,24 @@ EdgeAxis best_edges(const Polyhedron& a, const Polyhedron& b, const Relative& re
   return best;
 }
 
+/// Do the shapes overlap for sure: the point of A's edge that is nearest to B's lies in B.
+bool edge_is_inside(const Polyhedron& a, const Polyhedron& b, const Relative& relative,
+                    const EdgeAxis& edges) {
+  if (edges.a < 0) {
+    return false;
+  }
+  const HullData::Edge& ends_a = a.shape->edges[edges.a];
+  const HullData::Edge& ends_b = b.shape->edges[edges.b];
+  const Vec3& from_a = a.vertices[ends_a.from];
+  const Vec3 along_a = a.vertices[ends_a.to] - from_a;
+  const Vec3 from_b = relative.turn * b.vertices[ends_b.from] + relative.shift;
+  const Vec3 along_b = relative.turn * (b.vertices[ends_b.to] - b.vertices[ends_b.from]);
+  const Vec3 cross = along_a.cross(along_b);
+  const double t = (from_b - from_a).cross(along_b).dot(cross) / cross.squaredNorm();
+  return t >= 0.0 && t <= 1.0 &&
+         is_inside(b, relative.turn.transpose() * (from_a + t * along_a - relative.shift));
+}
+
 /// Of the faces within the preference tolerance of the distance the one that is preferred.
 std::optional<FacingFace> preferred_face(const Convex& shape_a, const Convex& shape_b,
                                          double distance, const Memory& found) {
@@ -288,12 +307,6 @@ void separate_polyhedra(const Convex& shape_a, const Convex& shape_b,
     }
     return;
   }
-  if (!found.faces_a.holds_a_vertex(a, of_a.nearest) &&
-      !found.faces_b.holds_a_vertex(b, of_b.nearest) &&
-      gjk(shape_a, shape_b, 0.5, 0.0).upper > 0.0) {
-    return;  // they may be apart along the product of two edges, however far
-  }
-  result.is_distance = true;
   const Relative relative = seen_from(a, b);
   // N, from B to A, in the frames of A and of B; how far B reaches along it, from A's origin.
   const Vec3 in_a = a_is_best ? Vec3(-a.shape->normals[of_a.face])
@@ -306,6 +319,12 @@ void separate_polyhedra(const Convex& shape_a, const Convex& shape_b,
   edges_that_may_win(b, found.faces_b, depth, in_b, b_reaches - shift - 2.0 * depth, &relative.turn,
                      found.edges_b);
   const EdgeAxis edges = best_edges(a, b, relative, by_faces, found.edges_a, found.edges_b);
+  if (!found.faces_a.holds_a_vertex(a, of_a.nearest) &&
+      !found.faces_b.holds_a_vertex(b, of_b.nearest) && !edge_is_inside(a, b, relative, edges) &&
+      gjk(shape_a, shape_b, 0.5, 0.0).upper > 0.0) {
+    return;  // they may be apart along the product of two edges, however far
+  }
+  result.is_distance = true;
   result.separation = edges.separation;
   result.face = preferred_face(shape_a, shape_b, edges.separation, found);
   if (!result.face) {

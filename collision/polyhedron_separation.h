@@ -24,12 +24,12 @@ struct PolyhedronSeparation {
 /// What cannot win is not looked at:
 /// - a face, where a vertex of the other shape that is known already lies deeper below it than the
 ///   best separation s says;
-/// - an edge, where the shapes overlap (proved by a vertex that lies inside, or by GJK). With D the
-///   depth along the best face: an edge of A can give less only if a known vertex of B lies less
-///   than D below one of its two faces (between the two normals the depth below the edge is at
-///   least that below the less deep face); and as the least translation joins points of the two
-///   edges that are at most D apart, both come within D or 2 D of where the best face's separation
-///   is measured.
+/// - an edge, where the shapes overlap (proved by a vertex or a point of the best edge that lies
+///   inside, or by GJK). With D the depth along the best face: an edge of A can give less only if a
+///   known vertex of B lies less than D below one of its two faces (between the two normals the
+///   depth below the edge is at least that below the less deep face); and as the least translation
+///   joins points of the two edges that are at most D apart, both come within D or 2 D of where the
+///   best face's separation is measured.
 ///
 /// Every axis counts with the full support of both shapes, so that each gives a valid bound
 /// however nearly parallel its edges are. Cost: for shallow overlaps about (faces + vertices); at

@@ -1,6 +1,7 @@
 #include <signorini/collision/gjk.h>
 #include <signorini/collision/penetration.h>
 #include <signorini/collision/polyhedron_separation.h>
+#include <signorini/collision/rims.h>
 #include <signorini/collision/separation.h>
 
 #include <Eigen/Dense>
@@ -219,20 +220,40 @@ class Search {
     try_pieces(Vec3(candidates_[highest_].normal), kAngles[1]);
   }
 
-  /// Looks along the directions of all pieces within an angle of the best one, and goes on from one
-  /// that is better by more than a tie.
-  void refine_within(double angle) {
+  /// Looks along the directions of all pieces within an angle of each of some directions (s may
+  /// have several maxima on one pair of pieces), and goes on from one that is better by more than a
+  /// tie.
+  template <std::size_t kCount>
+  void refine_around(const std::array<Vec3, kCount>& directions, double angle) {
     double best = distance() + tie();
     std::optional<Vec3> better;
-    for_all_normals(normal(), angle, [&](const Vec3& n, const Stratum&, const Stratum&) {
-      const double s = separation_along(a_, b_, n);
-      if (s > best) {
-        best = s;
-        better = n;
-      }
-    });
+    for (const Vec3& direction : directions) {
+      for_all_normals(direction, angle, [&](const Vec3& n, const Stratum&, const Stratum&) {
+        const double s = separation_along(a_, b_, n);
+        if (s > best) {
+          best = s;
+          better = n;
+        }
+      });
+    }
     if (better) {
       refine(*better);
+    }
+  }
+
+  /// Two rims nearly flush: rounding stops GJK, and at its normal a rim has no one point.
+  void refine_rims() {
+    const Vec3 n = normal();
+    collect_pieces(n, kAngles[0]);
+    for (const Stratum& piece_a : pieces_a_) {
+      for (const Stratum& piece_b : pieces_b_) {
+        if (piece_a.kind == Kind::kRim && piece_b.kind == Kind::kRim) {
+          const RimDirections found = crossing_rims(piece_a, piece_b, n);
+          for (int k = 0; k < found.count; ++k) {
+            offer(found.normals[k], 0, piece_a, piece_b);
+          }
+        }
+      }
     }
   }
 
@@ -260,6 +281,11 @@ class Search {
     }
   }
 
+  /// Less than this between two separations, m, counts as nothing.
+  [[nodiscard]] double tie() const {
+    return kTie * std::min(a_.size(), b_.size()) +
+           16.0 * std::numeric_limits<double>::epsilon() * (a_.size() + b_.size());
+  }
   [[nodiscard]] double distance() const { return candidates_[highest_].distance; }
   [[nodiscard]] Vec3 normal() const { return candidates_[highest_].normal; }
 
@@ -276,18 +302,17 @@ class Search {
     candidates_.push_back({s, n, rank, piece_a, piece_b});
   }
 
-  [[nodiscard]] double tie() const {
-    return kTie * std::min(a_.size(), b_.size()) +
-           16.0 * std::numeric_limits<double>::epsilon() * (a_.size() + b_.size());
+  void collect_pieces(const Vec3& near, double angle) {
+    pieces_a_.clear();
+    pieces_b_.clear();
+    a_.add_strata(-near, angle, pieces_a_);
+    b_.add_strata(near, angle, pieces_b_);
   }
 
   /// visit(n, piece_a, piece_b) for the normals of every pair of pieces within an angle of `near`.
   template <class Visit>
   void for_all_normals(const Vec3& near, double angle, Visit&& visit) {
-    pieces_a_.clear();
-    pieces_b_.clear();
-    a_.add_strata(-near, angle, pieces_a_);
-    b_.add_strata(near, angle, pieces_b_);
+    collect_pieces(near, angle);
     for (const Stratum& piece_a : pieces_a_) {
       for (const Stratum& piece_b : pieces_b_) {
         const Normals normals = normals_of(piece_a, piece_b, near);
@@ -341,17 +366,42 @@ SearchMemory& memory() {
   return of_this_thread;
 }
 
+constexpr double kAllAbout = 1.6;  // radians
+
 /// Cores that all but touch, as on an edge, are nearly parted along many directions. Where one is
 /// much larger the polytope's rounding hides which is the best one, and all pieces of surface about
 /// the one it ended at are tried.
 void refine_touch(Search& search, const Convex& a, const Convex& b) {
   constexpr double kMuchLarger = 30.0;
-  constexpr double kAllAbout = 1.6;  // radians
+  constexpr double kAside = 0.3;
   const double size = std::min(a.size(), b.size());
   const double depth = -(search.distance() + a.rounding() + b.rounding());
   if (depth <= kTouch * size && std::max(a.size(), b.size()) > kMuchLarger * size) {
-    search.refine_within(kAllAbout);
+    const Vec3 n = search.normal();
+    const Vec3 along = kAside * n.unitOrthogonal();
+    const Vec3 across = n.cross(along);
+    search.refine_around(std::array<Vec3, 5>{n, (n + along).normalized(), (n - along).normalized(),
+                                             (n + across).normalized(), (n - across).normalized()},
+                         kAllAbout);
   }
+}
+
+/// Where one shape lies deep in a round one the polytope's points run out before it knows the best
+/// direction: s has a maximum wherever a face or edge of one comes nearest to the other's surface,
+/// and all of them are nearly as good.
+void refine_deep(Search& search, double size) {
+  if (search.distance() > -0.5 * size) {
+    return;
+  }
+  std::array<Vec3, 26> directions;
+  std::size_t count = 0;
+  for (int k = 0; k < 27; ++k) {
+    const Vec3 direction(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+    if (!direction.isZero()) {
+      directions[count++] = direction.normalized();
+    }
+  }
+  search.refine_around(directions, kAllAbout);
 }
 
 /// Everything that separate() tries.
@@ -363,9 +413,13 @@ void run(Search& search, const Convex& a, const Convex& b, std::vector<Axis>& ax
     if (near.lower > 0.0 && !search.is_refined()) {
       search.refine(gjk(a, b, 0.0, 0.0).normal);  // Newton needs to start nearer
     }
+    if (near.lower > 0.0 &&
+        near.upper - (a.rounding() + b.rounding()) > search.distance() + search.tie()) {
+      search.refine_rims();
+    }
   }
   if (near.lower <= kTouch * size) {
-    penetration(a, b, kNear * size, axes);
+    const bool is_certain = penetration(a, b, kNear * size, axes);
     std::array<Vec3, kMostBasins> tried;
     std::size_t count = 0;
     for (const Axis& axis : axes) {
@@ -376,6 +430,9 @@ void run(Search& search, const Convex& a, const Convex& b, std::vector<Axis>& ax
         tried[count++] = axis.normal;
         search.refine(axis.normal);
       }
+    }
+    if (!is_certain) {
+      refine_deep(search, size);
     }
     refine_touch(search, a, b);
   }

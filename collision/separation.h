@@ -60,8 +60,12 @@ struct Separation {
 /// largest s wins. Every s(n) is a lower bound of d whatever n was found, so that none of it can
 /// make the distance too large; d is within some tens of roundings of the sizes, except that of
 /// translations whose lengths differ by less than 1e-8 of the smaller size either may be returned.
-/// Shapes of which one is more than 30 times as large, and whose cores all but touch, are looked at
-/// along the normals of all pieces within 1.6 rad besides: the polytope's rounding hides the best.
+/// Besides, where one start would miss the best of many directions that are nearly as good:
+/// - shapes of which one is more than 30 times as large, and whose cores all but touch, are looked
+///   at along the normals of all pieces within 1.6 rad (the polytope's rounding hides the best);
+/// - so is, from 26 directions, a shape that lies deep in another one, if the polytope's points ran
+///   out before it was certain;
+/// - rims of shapes apart, where GJK stopped short of 1e-9 of the smaller size: rims.h.
 /// Allocates nothing once no shape has more pieces near a direction than an earlier one of this
 /// thread.
 /// Two polyhedra come here only where separate_polyhedra() leaves them.
