@@ -40,7 +40,7 @@ function(signorini_compile_options target)
   if(SIGNORINI_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
-  if(SIGNORINI_PRECOMPILE)  # g++ 12 is wrong about moved strings, and no longer sees a system header
+  if(SIGNORINI_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # g++ 12 is wrong about moved strings, and no longer sees a system header
     target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-restrict -Wno-stringop-overread)
   endif()
 endfunction()

@@ -124,7 +124,7 @@ double ContactGroups::residual_of(const Problem& problem, const Group& group, co
                                   : largest_eigenvalue(block, dimension);
   const double length = has_normal_part ? std::hypot(x[0], tangential_norm(dimension, x)) : 0.0;
   const auto step = [&](double s) {
-    return std::max(cone_step(mu, dimension, x, v.data(), s),
+    return std::max(cone_step(group.mu, group.dimension, x, v.data(), s),
                     std::abs(std::min(s * length, w_normal)));
   };
   return std::max(step(1.0) / (1.0 + q_inf_), step(D) / unit_free_scale);
