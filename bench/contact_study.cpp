@@ -1,5 +1,6 @@
 #include "bench/contact_study.h"
 
+#include "bench/mesh_checks.h"
 #include "bench/shape_kinds.h"
 
 #include <algorithm>
@@ -14,6 +15,7 @@ namespace {
 using collision::testing::PlacedPair;
 using collision::testing::Placement;
 using collision::testing::Random;
+using collision::testing::ShapeKind;
 
 PlacedPair pose_of(Random& random, const KindPair& kinds, long number) {
   constexpr Placement kPlacements[] = {Placement::kAnywhere, Placement::kAligned,
@@ -22,19 +24,22 @@ PlacedPair pose_of(Random& random, const KindPair& kinds, long number) {
                                          kPlacements[number % 3]);
 }
 
-ContactStudyRow run_pair(const KindPair& kinds, const ContactStudyOptions& options) {
+/// @param draw (random, number): a pair; judge (pair, margin, random): a JudgedPair of it
+template <class Draw, class Judge>
+ContactStudyRow run(const std::string& name, const ContactStudyOptions& options, Draw&& draw,
+                    Judge&& judge) {
   ContactStudyRow row;
-  row.pair = kinds.name();
+  row.pair = name;
   Random random(options.seed);
   for (long k = 0; k < options.poses; ++k) {
-    PlacedPair pair = pose_of(random, kinds, k);
+    PlacedPair pair = draw(random, k);
     if (k % 2 == 1) {
       pair = kissing(pair, random);
       ++row.kissing;
     }
     const double margin =
         k % 4 < 2 ? 0.0 : pair.size * collision::testing::log_uniform(random, -6.0, 0.0);
-    const auto [verdict, distance] = judge_pair(pair, margin, random);
+    const auto [verdict, distance] = judge(pair, margin, random);
     ++row.poses;
     row.overlapping += distance <= 0.0 ? 1 : 0;
     for (int p = 0; p < kPairProperties; ++p) {
@@ -50,6 +55,44 @@ ContactStudyRow run_pair(const KindPair& kinds, const ContactStudyOptions& optio
     }
   }
   return row;
+}
+
+ContactStudyRow run_pair(const KindPair& kinds, const ContactStudyOptions& options) {
+  return run(
+      kinds.name(), options,
+      [&](Random& random, long number) { return pose_of(random, kinds, number); }, judge_pair);
+}
+
+/// A over a terrain, or in it.
+PlacedPair pose_on(const Terrain& terrain, double cell, PlacedPair pair, Random& random) {
+  const double extent = collision::bounding_radius(pair.a, Pose{});
+  const auto aside = [&] { return 1.7 * cell * collision::testing::uniform(random, -1.0, 1.0); };
+  const double above = collision::testing::uniform(random, -1.0, 2.0) * extent;
+  pair.pose_a.position = pair.pose_b * Vec3(aside(), aside(), above);
+  pair.b = terrain.mesh;
+  pair.size = std::min(extent, *std::max_element(terrain.radii.begin(), terrain.radii.end()));
+  pair.rounding =
+      std::numeric_limits<double>::epsilon() * (extent + 4.0 * cell + pair.pose_b.position.norm());
+  return pair;
+}
+
+/// A shape of this kind against a triangle mesh whose cells are a thirtieth to thirty times as
+/// large.
+ContactStudyRow run_on_mesh(const NamedShapeKind& kind, const ContactStudyOptions& options) {
+  const KindPair kinds{kind, {ShapeKind::kBox, "mesh"}};
+  Terrain terrain;
+  return run(
+      kinds.name(), options,
+      [&](Random& random, long number) {
+        const PlacedPair pair = pose_of(random, kinds, number);
+        const double cell = collision::bounding_radius(pair.a, Pose{}) *
+                            collision::testing::log_uniform(random, -1.5, 1.5);
+        terrain = random_terrain(random, cell);
+        return pose_on(terrain, cell, pair, random);
+      },
+      [&](const PlacedPair& pair, double margin, Random& random) {
+        return judge_on_terrain(pair, terrain, margin, random);
+      });
 }
 
 void print(const ContactStudyRow& row, std::ostream& out) {
@@ -99,11 +142,19 @@ ContactStudyReport run_contact_study(const ContactStudyOptions& options, std::os
   }
   out << fmt::format("{:>8}\n", "worst");
   std::string known;
-  for (const KindPair& kinds : shape_pairs()) {
-    known += (known.empty() ? "" : ", ") + kinds.name();
-    if (options.pair.empty() || options.pair == kinds.name()) {
-      report.rows.push_back(run_pair(kinds, options));
+  const auto study = [&](const std::string& name, auto&& run_it) {
+    known += (known.empty() ? "" : ", ") + name;
+    if (options.pair.empty() || options.pair == name) {
+      report.rows.push_back(run_it());
       print(report.rows.back(), out);
+    }
+  };
+  for (const KindPair& kinds : shape_pairs()) {
+    study(kinds.name(), [&] { return run_pair(kinds, options); });
+  }
+  for (const NamedShapeKind& kind : kShapeKinds) {
+    if (kind.kind != ShapeKind::kHalfSpace) {
+      study(std::string(kind.name) + "-mesh", [&] { return run_on_mesh(kind, options); });
     }
   }
   if (report.rows.empty()) {

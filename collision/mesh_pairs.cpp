@@ -77,6 +77,10 @@ class TriangleCore final : public Convex {
 
   void facet(const Vec3& n, Facet& facet) const override {
     const Vec3& normal = triangle_.normal;
+    if (std::abs(normal.dot(n)) < kEdgeOn * n.norm()) {
+      facet_edge_on(n, facet);
+      return;
+    }
     const bool is_front = normal.dot(n) >= 0.0;
     facet.reset(is_front ? kFront : kBack, is_front ? normal : Vec3(-normal));
     for (int i = 0; i < 3; ++i) {
@@ -88,6 +92,28 @@ class TriangleCore final : public Convex {
   }
 
  private:
+  /// Sine of the angle between n and the plane below which n sees edges and corners, no face.
+  static constexpr double kEdgeOn = 1e-3;
+
+  /// The edge that lies across n, or the corner that is furthest along it.
+  void facet_edge_on(const Vec3& n, Facet& facet) const {
+    const int v = furthest(n);
+    const auto add = [&](int k) {
+      facet.corners.push_back({triangle_.corners[k], static_cast<Feature>(k),
+                               kEdges + static_cast<Feature>(k), LocalSurface::vertex()});
+    };
+    for (const int k : {v, (v + 2) % 3}) {
+      if (std::abs(triangle_.edge_of(k).axis.dot(n)) < kEdgeOn * n.norm()) {
+        facet.reset(kEdges + static_cast<Feature>(k), n.normalized());
+        add(k);
+        add((k + 1) % 3);
+        return;
+      }
+    }
+    facet.reset(static_cast<Feature>(v), n.normalized());
+    add(v);
+  }
+
   /// More than any other face has: of two faces that meet flat, the triangle's carries the normal.
   static constexpr double kFirst = 1e300;
 
@@ -247,10 +273,24 @@ TriangleMeeting meet(const Convex& a, const PlacedMesh& mesh, int t, const Trian
   return meeting;
 }
 
-/// Widened by a distance and by some roundings of the two frames.
-Bounds widened(const Bounds& near, double by, const MeshData& mesh) {
+/// Where A is apart from a triangle, or touches it, beside it, but is deep below its plane, that
+/// depth means nothing; and as the normal beside it belongs to another triangle, that one has the
+/// contact.
+bool is_only_beside(const Convex& a, const TriangleCore& triangle, const TriangleMeeting& meeting) {
+  const double tolerance = preference_tolerance(a, triangle);
+  return !meeting.counts && meeting.distance > -tolerance &&
+         meeting.face.separation < std::min(meeting.distance, 0.0) - tolerance;
+}
+
+/// Some roundings of the two frames, m.
+double last_digits(const Bounds& near, const MeshData& mesh) {
   const double far = near.low.cwiseAbs().maxCoeff() + near.high.cwiseAbs().maxCoeff() + mesh.radius;
-  const Vec3 reach = Vec3::Constant(by + 64.0 * std::numeric_limits<double>::epsilon() * far);
+  return 64.0 * std::numeric_limits<double>::epsilon() * far;
+}
+
+/// Widened by a distance and by some roundings.
+Bounds widened(const Bounds& near, double by, const MeshData& mesh) {
+  const Vec3 reach = Vec3::Constant(by + last_digits(near, mesh));
   return {near.low - reach, near.high + reach};
 }
 
@@ -327,19 +367,51 @@ void add_last_word(const Convex& a, const TriangleCore& triangle, double margin,
                    std::vector<Contact>& contacts) {
   SegmentOnTriangle nearest;
   const double touch = kTouch * std::min(a.size(), triangle.size());
-  if (a.segment() == nullptr ||
-      (nearest_points(*a.segment(), triangle.triangle(), kInfinity, nearest) &&
-       nearest.between.norm() > touch)) {
+  const FacingFace face = least_deep_face(a, triangle.triangle());
+  const Vec3 on_a = a.support(-face.normal) - a.rounding() * face.normal;
+  const bool is_pierced = a.segment() != nullptr &&
+                          !(nearest_points(*a.segment(), triangle.triangle(), kInfinity, nearest) &&
+                            nearest.between.norm() > touch);
+  if (!is_pierced || !triangle.triangle().is_under(on_a)) {
     find_contacts(a, triangle, margin, contacts);
     return;
   }
-  const FacingFace face = least_deep_face(a, triangle.triangle());
-  const Vec3 on_a = a.support(-face.normal) - a.rounding() * face.normal;
   Contact contact = narrow::make_contact(on_a, on_a - face.separation * face.normal, face.normal,
                                          face.separation, kFront, NormalOwner::kFaceB);
   contact.surface_a = LocalSurface::sphere(a.rounding());
   contact.surface_b = LocalSurface::face();
   contacts.push_back(contact);
+}
+
+/// The contacts of A with the triangles within `margin` of it; what is nearest.
+struct NearestTriangle {
+  double distance = kInfinity;
+  int number = -1;
+};
+
+NearestTriangle add_contacts(const Convex& a, const Bounds& near, const PlacedMesh& b,
+                             double margin, std::vector<Contact>& contacts) {
+  NearestTriangle least;
+  Separation& apart = memory().apart;
+  for (const int t : triangles_near(widened(near, margin, b.data), b.data)) {
+    const TriangleCore triangle = core_of(b, t);
+    const TriangleMeeting meeting = meet(a, b, t, triangle, margin, apart);
+    if (meeting.distance < least.distance) {
+      least = {meeting.distance, t};
+    }
+    if (meeting.distance > margin) {
+      continue;
+    }
+    const std::size_t before = contacts.size();
+    if (meeting.counts) {
+      find_contacts(a, triangle, apart, margin, contacts);
+    } else if (!is_only_beside(a, triangle, meeting)) {
+      find_contacts_on_face(a, triangle, meeting.face, margin, contacts);
+    }
+    number_features(b.data, t, before, false, contacts);
+    merge(before, contacts);
+  }
+  return least;
 }
 
 }  // namespace
@@ -355,7 +427,7 @@ double mesh_distance(const Convex& a, const Bounds& near, const PlacedMesh& b) {
   std::vector<Contact>& contacts = memory().deepest;
   contacts.clear();
   find_mesh_contacts(a, near, b, 0.0, contacts);
-  double deepest = kInfinity;
+  double deepest = 0.0;  // they overlap, whatever rounding makes of the gaps
   for (const Contact& contact : contacts) {
     deepest = std::min(deepest, contact.gap);
   }
@@ -371,32 +443,19 @@ bool mesh_test(const Convex& a, const Bounds& near, const PlacedMesh& b) {
 
 void find_mesh_contacts(const Convex& a, const Bounds& near, const PlacedMesh& b, double margin,
                         std::vector<Contact>& contacts) {
-  double least = kInfinity;
-  int nearest = -1;
-  Separation& apart = memory().apart;
-  for (const int t : triangles_near(widened(near, margin, b.data), b.data)) {
-    const TriangleCore triangle = core_of(b, t);
-    const TriangleMeeting meeting = meet(a, b, t, triangle, margin, apart);
-    if (meeting.distance < least) {
-      least = meeting.distance;
-      nearest = t;
-    }
-    if (meeting.distance > margin) {
-      continue;
-    }
-    const std::size_t before = contacts.size();
-    if (meeting.counts) {
-      find_contacts(a, triangle, apart, margin, contacts);
-    } else {
-      find_contacts_on_face(a, triangle, meeting.face, margin, contacts);
-    }
-    number_features(b.data, t, before, false, contacts);
-    merge(before, contacts);
+  const double within = margin + last_digits(near, b.data);
+  const NearestTriangle nearest = add_contacts(a, near, b, within, contacts);
+  if (!contacts.empty() || nearest.distance > within) {
+    return;
   }
+  // The one that touches beside another triangle's edge leaves the contact to that one, which may
+  // be a little further away.
+  const TriangleCore triangle = core_of(b, nearest.number);
+  add_contacts(a, near, b, within + preference_tolerance(a, triangle), contacts);
   // Where no triangle's normal counts and A is over none, the nearest triangle has the last word.
-  if (contacts.empty() && least <= margin) {
-    add_last_word(a, core_of(b, nearest), margin, contacts);
-    number_features(b.data, nearest, 0, true, contacts);
+  if (contacts.empty()) {
+    add_last_word(a, triangle, within, contacts);
+    number_features(b.data, nearest.number, 0, true, contacts);
   }
 }
 

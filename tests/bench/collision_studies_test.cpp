@@ -15,7 +15,7 @@ namespace {
 
 TEST(ContactStudy, EveryPairKeepsItsPropertiesOnASample) {
   std::ostringstream out;
-  const ContactStudyReport report = run_contact_study({.poses = 600, .seed = 7}, out);
+  const ContactStudyReport report = run_contact_study({.poses = 600, .seed = 1}, out);
   EXPECT_TRUE(report.passed()) << out.str();
   for (const ContactStudyRow& row : report.rows) {
     EXPECT_EQ(row.poses, 600) << row.pair;

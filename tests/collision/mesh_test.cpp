@@ -209,6 +209,49 @@ TEST(Mesh, OverlapShallowAndDeepIsConsistent) {
   EXPECT_GT(touching, 500);
 }
 
+// The cap is the face, and sees the triangles edge-on.
+TEST(Mesh, ACylinderPushedIntoTheBorderMeetsItsEdge) {
+  const TriangleMesh floor = flat_floor(4);
+  const double border = floor.data->vertices.back().x();
+  const Cylinder cylinder{1.4, 0.46};
+  const Quat along_x(Eigen::AngleAxisd(M_PI_2, Vec3::UnitY()));
+  for (const double height : {0.0, 0.3, -0.2}) {
+    for (const double across : {0.1, 1.1}) {
+      const auto contacts =
+          find(cylinder, {Vec3(border + 0.2, across, height), along_x}, floor, Pose{}, 0.0);
+      ASSERT_FALSE(contacts.empty());
+      for (const Contact& contact : contacts) {
+        EXPECT_LE((contact.normal - Vec3::UnitX()).norm(), 1e-12);
+        EXPECT_NEAR(contact.gap, -0.26, 1e-12);
+        EXPECT_NEAR(contact.point_b.x(), border, 1e-12);
+        EXPECT_NEAR(contact.point_b.z(), 0.0, 1e-12);
+      }
+    }
+  }
+}
+
+// An end hangs beside the border, far below the plane: no foot of it is on the mesh.
+TEST(Mesh, ACapsuleThatPiercesTheBorderIsPushedFromAPointOfTheMesh) {
+  const TriangleMesh floor = flat_floor(4);
+  const double border = floor.data->vertices.back().x();
+  const Capsule capsule{0.06, 1.5};
+  for (const double inside : {0.02, 0.1, 0.3}) {
+    for (const double shift : {-0.8, 0.0, 0.8}) {
+      for (const double tilt : {0.3, 0.6, 0.9, 1.2}) {
+        const Quat outwards(Eigen::AngleAxisd(M_PI - tilt, Vec3::UnitY()));
+        const Vec3 centre = Vec3(border - inside, 0.1, 0.0) - shift * (outwards * Vec3::UnitZ());
+        const auto contacts = find(capsule, {centre, outwards}, floor, Pose{}, 0.0);
+        ASSERT_FALSE(contacts.empty());
+        for (const Contact& contact : contacts) {
+          EXPECT_LE(contact.point_b.x(), border + 1e-9) << inside << " " << shift << " " << tilt;
+          EXPECT_NEAR(contact.point_b.z(), 0.0, 1e-9);
+          EXPECT_LE(contact.gap, 0.0);
+        }
+      }
+    }
+  }
+}
+
 TEST(Mesh, ContactTimeOfAFallingBallIsThatOfThePlane) {
   const TriangleMesh floor = flat_floor(8);
   const ConstantVelocityMotion falling(at(0.123, 0.077, 2.0), Vec3(0.1, 0.0, -3.0), Vec3(1, 2, 3));
