@@ -168,6 +168,8 @@ GapKinematics gap_kinematics(const Contact& contact, const BodyState& a, const V
   gap.normal_dot = motion.n;
   gap.curvature_acceleration =
       motion.n.dot(rates.u_t) - motion.s_a.dot(rates.n_a) + motion.s_b.dot(rates.n_b);
+  gap.wander_a = motion.s_a;
+  gap.wander_b = motion.s_b;
   gap.degenerate = motion.degenerate;
   return gap;
 }

@@ -15,6 +15,8 @@ struct GapKinematics {
   /// d'' minus N.(a_A - a_B): what the turning of N and the wandering of the contact point on
   /// curved surfaces add to the material accelerations a of the points, m/s^2.
   double curvature_acceleration = 0.0;
+  Vec3 wander_a = Vec3::Zero();  ///< s_A: at which the contact point wanders over A, m/s
+  Vec3 wander_b = Vec3::Zero();  ///< s_B
   /// The features do not determine N': parallel edges given as edge-edge, a sharp feature on a
   /// sharp feature at zero gap, principal directions along N. The part of N' that they determine
   /// is kept, what they contradict is met in the least-squares sense, and the rest is zero.

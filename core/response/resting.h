@@ -2,6 +2,7 @@
 
 #include <signorini/core/model/body.h>
 #include <signorini/core/model/contact.h>
+#include <signorini/core/response/contact_acceleration.h>
 #include <signorini/lcp/result.h>
 #include <signorini/lcp/solver.h>
 
@@ -11,21 +12,21 @@
 
 namespace signorini {
 
-/// Force and torque on a body, world axes: N, N m about the centre of mass.
-struct Wrench {
-  Vec3 force = Vec3::Zero();
-  Vec3 torque = Vec3::Zero();
-};
-
 /// How resting forces are solved for.
 struct RestingSettings {
   /// The LCP solver, a name that lcp::make_solver() knows, and what it is told.
   std::string solver = "lemke";
   lcp::SolverSettings lcp = {.tolerance = 1e-12};
+  /// Of coulomb_forces() where contacts may stick: a name that lcp::make_solver() knows, that takes
+  /// cones over a nonsymmetric matrix.
+  std::string friction_solver = "auto";
   /// Against drift of a run: b_i + 2 d_i'/T + d_i/T^2 in the place of b_i, T this time (Baumgarte,
   /// Computer Methods in Applied Mechanics and Engineering 1, 1972, critically damped); infinite:
   /// off. s, > 0.
   double stabilization_time = std::numeric_limits<double>::infinity();
+
+  /// @throws std::invalid_argument naming field, value and bound.
+  void validate() const;
 };
 
 /// Resting forces: 0 <= g ⊥ A g + b >= 0 with b = d'' at g = 0 (notes, section 5; design, 4.7).
@@ -65,8 +66,5 @@ void resting_forces(const Bodies& bodies, const State& state, const ContactSet& 
                     const std::vector<Wrench>& loads,
                     const std::vector<Wrench>& driven_acceleration, const RestingSettings& settings,
                     RestingReport& report);
-
-/// F = m gravity_scale g for every dynamic body, no torque.
-[[nodiscard]] std::vector<Wrench> gravity_loads(const Bodies& bodies, const Vec3& gravity);
 
 }  // namespace signorini

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <signorini/core/model/motion.h>
-#include <signorini/core/response/resting.h>
+#include <signorini/core/response/contact_acceleration.h>
 
 namespace signorini {
 
