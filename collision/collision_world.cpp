@@ -4,6 +4,7 @@
 #include <signorini/collision/pair_query.h>
 #include <signorini/core/model/number_text.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -139,7 +140,7 @@ Vec3 CollisionWorld::friction_direction(int collider_a, int collider_b) const {
 }
 
 std::optional<FirstContact> CollisionWorld::first_contact(std::span<const Motion* const> motions,
-                                                          double duration) {
+                                                          double duration, RestingPairs resting) {
   check_finder_input("motions", motions.size(), is_dynamic_.size(), "duration", duration);
   for (std::size_t i = 0; i < motions.size(); ++i) {
     if (motions[i] == nullptr) {
@@ -154,7 +155,8 @@ std::optional<FirstContact> CollisionWorld::first_contact(std::span<const Motion
 
   std::optional<FirstContact> first;
   for (const auto& [a, b] : pairs_) {
-    if (!may_touch(a, b)) {
+    const std::pair<int, int> bodies = std::minmax(colliders_[a].body, colliders_[b].body);
+    if (!may_touch(a, b) || std::find(resting.begin(), resting.end(), bodies) != resting.end()) {
       continue;
     }
     const MovingShape moving_a{colliders_[a].shape, *motions[colliders_[a].body],

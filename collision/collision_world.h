@@ -36,7 +36,9 @@ class CollisionWorld final : public ContactFinder {
   /// The earliest contact_time() of all pairs; of equal ones the first pair.
   /// @throws std::invalid_argument: motions one a body, none null; duration finite and >= 0.
   [[nodiscard]] std::optional<FirstContact> first_contact(std::span<const Motion* const> motions,
-                                                          double duration) override;
+                                                          double duration,
+                                                          RestingPairs resting) override;
+  using ContactFinder::first_contact;
 
   /// From now on find() keeps at most this many contacts of a patch, by reduce_contacts(); 0 (the
   /// default): all, which the solvers do not mind.

@@ -33,7 +33,7 @@ class BallsOverFloor final : public signorini::ContactFinder {
   }
 
   std::optional<signorini::FirstContact> first_contact(std::span<const signorini::Motion* const>,
-                                                       double) override {
+                                                       double, signorini::RestingPairs) override {
     throw std::logic_error("the time stepper asks for no contact times; EventStepper would");
   }
 

@@ -13,8 +13,8 @@ void SceneContacts::find(const State& state, double margin, ContactSet& contacts
 }
 
 std::optional<FirstContact> SceneContacts::first_contact(std::span<const Motion* const> motions,
-                                                         double duration) {
-  return world_.first_contact(motions, duration);
+                                                         double duration, RestingPairs resting) {
+  return world_.first_contact(motions, duration, resting);
 }
 
 OverlapMeasure measure_overlap(SceneContacts& contacts, const State& state) {

@@ -12,7 +12,8 @@ class SceneContacts final : public ContactFinder {
 
   void find(const State& state, double margin, ContactSet& contacts) override;
   [[nodiscard]] std::optional<FirstContact> first_contact(std::span<const Motion* const> motions,
-                                                          double duration) override;
+                                                          double duration,
+                                                          RestingPairs resting) override;
 
  private:
   collision::CollisionWorld world_;

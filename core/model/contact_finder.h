@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <span>
+#include <utility>
 
 namespace signorini {
 
@@ -15,6 +16,9 @@ struct FirstContact {
   int body_a = -1;
   int body_b = -1;
 };
+
+/// Pairs of bodies, each (smaller number, larger number).
+using RestingPairs = std::span<const std::pair<int, int>>;
 
 /// What a stepper asks of collision detection. `collision` implements it; an engine with its own
 /// collision detection implements it over its own data.
@@ -29,8 +33,15 @@ class ContactFinder {
   /// The first time in [0, duration] at which a pair that is apart, or touching and approaching,
   /// comes into contact. A pair that touches and rests or separates reports its next approach.
   /// @param motions one a body, in body order
+  /// @param resting pairs that are not asked about: what rests would cost most, and its next
+  /// contact is the caller's to see
   [[nodiscard]] virtual std::optional<FirstContact> first_contact(
-      std::span<const Motion* const> motions, double duration) = 0;
+      std::span<const Motion* const> motions, double duration, RestingPairs resting) = 0;
+  /// Of all pairs.
+  [[nodiscard]] std::optional<FirstContact> first_contact(std::span<const Motion* const> motions,
+                                                          double duration) {
+    return first_contact(motions, duration, {});
+  }
 };
 
 }  // namespace signorini

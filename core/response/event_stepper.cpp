@@ -2,6 +2,8 @@
 #include <signorini/core/model/number_text.h>
 #include <signorini/core/response/assembly.h>
 #include <signorini/core/response/event_stepper.h>
+#include <signorini/core/response/event_support.h>
+#include <signorini/core/response/impact_without_collision.h>
 #include <signorini/core/response/segment_motion.h>
 
 #include <algorithm>
@@ -29,13 +31,6 @@ void require_positive(double value, const char* field, const char* unit) {
   }
 }
 
-/// Resting contacts and what they do to the bodies.
-struct Support {
-  ContactSet contacts;
-  RestingReport forces;
-  std::vector<Wrench> loads;  // gravity and contact forces, one a body
-};
-
 }  // namespace
 
 void EventSettings::validate() const {
@@ -48,9 +43,7 @@ void EventSettings::validate() const {
   require_positive(touching, "touching", "m");
   require_positive(resting_speed, "resting_speed", "m/s");
   require_positive(separating_speed, "separating_speed", "m/s");
-  if (impact.friction) {
-    throw std::invalid_argument("event settings: impact.friction: must be off, got on");
-  }
+  require_positive(sticking_speed, "sticking_speed", "m/s");
   if (most_events < 1) {
     throw std::invalid_argument("event settings: most_events: must be >= 1, got " +
                                 std::to_string(most_events));
@@ -63,6 +56,10 @@ std::string_view to_string(EventKind kind) {
     case EventKind::kImpact: return "impact";
     case EventKind::kRest: return "rest";
     case EventKind::kBreakUp: return "break-up";
+    case EventKind::kStick: return "stick";
+    case EventKind::kReversal: return "reversal";
+    case EventKind::kSlip: return "slip";
+    case EventKind::kImpactWithoutCollision: return "impact without collision";
   }
   return "unknown event";
 }
@@ -88,20 +85,21 @@ class EventStepper::Run {
       if (!settle()) {
         return;
       }
+      settings_.resting.stabilization_time = kStabilizing * next_length_;
+      support_ = support(state_);
+      const bool consistent = lcp::is_solved(support_.status);
+      if (consistent) {
+        note_changes();
+        hold();
+      } else if (!end_inconsistency()) {
+        return;
+      }
       if (static_cast<int>(report_.events.size()) >= settings_.most_events) {
         report_.status = lcp::Status::kIterationLimit;
         return;
       }
-      settings_.resting.stabilization_time = kStabilizing * next_length_;
-      if (!support(state_, support_)) {
-        return;
-      }
-      held_ = support_.contacts;
-      report_.resting_contacts = support_.contacts;
-      report_.resting_forces = support_.forces.forces;
-      report_.redundancy = support_.forces.redundancy;
-      if (!take_segment()) {
-        return;
+      if (consistent) {
+        take_segment();
       }
     }
     find(state_);
@@ -121,12 +119,6 @@ class EventStepper::Run {
                                     number_text(contact.material.rolling_friction) + " and " +
                                     number_text(contact.material.spinning_friction) + " m");
       }
-      if (contact.material.friction > 0.0) {
-        throw std::invalid_argument("event stepper: friction of bodies " +
-                                    std::to_string(contact.body_a) + " and " +
-                                    std::to_string(contact.body_b) + ": must be 0, got " +
-                                    number_text(contact.material.friction));
-      }
     }
   }
 
@@ -138,6 +130,9 @@ class EventStepper::Run {
     }
     ImpactReport impact;
     note_event(d_dot);
+    settings_.impact.friction =
+        std::any_of(contacts_.begin(), contacts_.end(),
+                    [](const Contact& contact) { return contact.material.friction > 0.0; });
     resolve_impact(bodies_, contacts_, settings_.impact, state_, impact);
     if (!lcp::is_solved(impact.status)) {
       report_.status = impact.status;
@@ -157,9 +152,9 @@ class EventStepper::Run {
     Event event{
         .time = report_.time, .body_a = contact.body_a, .body_b = contact.body_b, .speed = speed};
     if (speed > settings_.resting_speed) {
-      held_.clear();
+      forget_struck(d_dot);
       report_.events.push_back(event);
-    } else if (e > 0.0 && e < 1.0 && speed > settings_.separating_speed) {
+    } else if (e > 0.0 && e < 1.0 && speed > settings_.separating_speed && !is_held(contact)) {
       event.kind = EventKind::kRest;
       RestingReport free;
       resting_forces(bodies_, state_, {contact}, gravity_loads(bodies_, settings_.gravity), {},
@@ -171,50 +166,117 @@ class EventStepper::Run {
     }
   }
 
-  /// The forces of the resting contacts of a state, of the contacts found last.
-  /// @return false if their problem was not solved.
-  bool support(const State& state, Support& out) {
-    const lcp::Vector d_dot = gap_velocities(bodies_, state, contacts_);
-    out.contacts.clear();
+  /// What rested in connected sets with an impact is no longer held.
+  void forget_struck(const lcp::Vector& d_dot) {
+    const std::vector<int> set_of_contact = connected_sets(bodies_, contacts_);
+    std::vector<bool> is_struck(contacts_.size(), false);  // by set
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
-      const double most =
-          is_held(contacts_[i]) ? settings_.resting_speed : settings_.separating_speed;
-      if (d_dot[static_cast<lcp::Index>(i)] <= most) {
-        out.contacts.push_back(contacts_[i]);
+      if (d_dot[static_cast<lcp::Index>(i)] < -settings_.resting_speed) {
+        is_struck[set_of_contact[i]] = true;
       }
     }
-    out.loads = gravity_loads(bodies_, settings_.gravity);
-    out.forces = {};
-    if (out.contacts.empty()) {
-      return true;
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+      if (is_struck[set_of_contact[i]]) {
+        forget(contacts_[i]);
+      }
     }
-    ++report_.force_solves;
-    resting_forces(bodies_, state, out.contacts, out.loads, {}, settings_.resting, out.forces);
-    if (!lcp::is_solved(out.forces.status)) {
-      report_.status = out.forces.status;
-      report_.detail = "resting forces at " + number_text(report_.time) + " s";
+  }
+
+  void forget(const Contact& contact) {
+    std::erase_if(held_, [&](const RestingContact& held) {
+      return signorini::find({held}, contact) != nullptr;
+    });
+  }
+
+  /// Of the contacts found last, in their state.
+  [[nodiscard]] Support support(const State& state) {
+    Support made = find_support(bodies_, state, contacts_, held_, settings_);
+    report_.force_solves += made.contacts.empty() ? 0 : 1;
+    return made;
+  }
+
+  /// The impact without collision of the contacts whose forces were not found, if it is one.
+  bool end_inconsistency() {
+    const RestingContacts& contacts = support_.unsolved;
+    ContactSet set;
+    lcp::Vector b(static_cast<lcp::Index>(contacts.size()));
+    Event event{.kind = EventKind::kImpactWithoutCollision,
+                .time = report_.time,
+                .forces_status = support_.status};
+    for (const RestingContact& one : contacts) {
+      b[static_cast<lcp::Index>(set.size())] = one.b;
+      set.push_back(one.contact);
+      const double slip = tangential_slip(bodies_, state_, one.contact).norm();
+      if (one.contact.material.friction > 0.0 && slip > event.speed) {
+        event.speed = slip;
+        event.body_a = one.contact.body_a;
+        event.body_b = one.contact.body_b;
+      }
+    }
+    report_.status = support_.status;
+    report_.detail = "resting forces at " + number_text(report_.time) + " s";
+    if (event.speed <= settings_.sticking_speed) {
       return false;
     }
-    for (std::size_t i = 0; i < out.contacts.size(); ++i) {
-      const Contact& contact = out.contacts[i];
-      const Vec3 force = out.forces.forces[static_cast<lcp::Index>(i)] * contact.normal;
-      push(contact.body_a, contact.point_a, force, state, out.loads);
-      push(contact.body_b, contact.point_b, -force, state, out.loads);
+    const ShockReport shock = impact_without_collision(bodies_, set, b, settings_.resting, state_);
+    if (!lcp::is_solved(shock.status)) {
+      report_.detail +=
+          ", and no impact without collision: " + std::string(lcp::to_string(shock.status)) +
+          (shock.detail.empty() ? "" : " (" + shock.detail + ")");
+      return false;
+    }
+    report_.status = lcp::Status::kNotRun;
+    report_.detail.clear();
+    report_.energy_change_impacts += shock.energy_change;
+    report_.events.push_back(event);
+    for (const RestingContact& one : contacts) {
+      forget(one.contact);
     }
     return true;
   }
 
-  [[nodiscard]] bool is_held(const Contact& contact) const {
-    return std::any_of(held_.begin(), held_.end(),
-                       [&](const Contact& held) { return same(contact, held); });
+  /// Contacts that stuck in the last segment and slide now, and the other way round.
+  void note_changes() {
+    for (const RestingContact& now : support_.contacts) {
+      const RestingContact* before = signorini::find(held_, now.contact);
+      if (before == nullptr) {
+        continue;
+      }
+      Event event{.time = report_.time, .body_a = now.contact.body_a, .body_b = now.contact.body_b};
+      const bool slid = before->mode == ContactMode::kSlides;
+      const bool slides = now.mode == ContactMode::kSlides;
+      if (slid && now.mode == ContactMode::kSticks) {
+        event.kind = EventKind::kStick;
+      } else if (slid && slides && now.direction.dot(before->direction) < 0.0) {
+        event.kind = EventKind::kReversal;
+      } else if (before->mode == ContactMode::kSticks && slides) {
+        event.kind = EventKind::kSlip;
+      } else {
+        continue;
+      }
+      report_.events.push_back(event);
+    }
   }
 
-  void push(int body, const Vec3& point, const Vec3& force, const State& state,
-            std::vector<Wrench>& loads) const {
-    if (bodies_[body].is_dynamic()) {
-      loads[body].force += force;
-      loads[body].torque += (point - state[body].x).cross(force);
+  /// What rests now is what the next segment holds, and what the report tells.
+  void hold() {
+    held_ = support_.contacts;
+    report_.redundancy = support_.redundancy;
+    report_.resting_contacts.clear();
+    report_.resting_contact_forces.clear();
+    report_.resting_modes.clear();
+    report_.resting_forces.resize(static_cast<lcp::Index>(held_.size()));
+    for (const RestingContact& one : held_) {
+      report_.resting_forces[static_cast<lcp::Index>(report_.resting_contacts.size())] =
+          one.normal_force;
+      report_.resting_contacts.push_back(one.contact);
+      report_.resting_contact_forces.push_back(one.force);
+      report_.resting_modes.push_back(one.mode);
     }
+  }
+
+  [[nodiscard]] bool is_held(const Contact& contact) const {
+    return signorini::find(held_, contact) != nullptr;
   }
 
   [[nodiscard]] std::vector<SegmentMotion> motions(const std::vector<Wrench>& loads) const {
@@ -234,28 +296,25 @@ class EventStepper::Run {
     return state;
   }
 
-  /// The middle's forces for a segment of this length; lost: a contact that pushes is gone there.
-  /// @return false if they were not found.
-  bool middle_loads(double length, std::vector<Wrench>& loads, bool& lost) {
+  /// The middle's forces for a segment of this length. @return false if it goes too far straight
+  /// on: a contact that closes at the start is gone midway, or there are no forces there.
+  bool middle_loads(double length, std::vector<Wrench>& loads) {
     loads = support_.loads;
-    lost = false;
     if (support_.contacts.empty()) {
       return true;
     }
-    Support middle;
     const State halfway = at(motions(support_.loads), 0.5 * length);
     find(halfway);
-    if (!support(halfway, middle)) {
+    const Support middle = support(halfway);
+    if (!lcp::is_solved(middle.status)) {
       return false;
     }
-    // A contact that pushes at the start and is gone midway was lost by going too far straight on.
-    lost = std::any_of(support_.contacts.begin(), support_.contacts.end(), [&](const Contact& one) {
-      return pushes(one, support_) &&
-             !std::any_of(middle.contacts.begin(), middle.contacts.end(),
-                          [&](const Contact& other) { return same(one, other); });
-    });
     loads = middle.loads;
-    return true;
+    return std::all_of(support_.contacts.begin(), support_.contacts.end(),
+                       [&](const RestingContact& one) {
+                         return one.mode == ContactMode::kOpens ||
+                                signorini::find(middle.contacts, one.contact) != nullptr;
+                       });
   }
 
   /// The error of a segment over the tolerance.
@@ -279,41 +338,29 @@ class EventStepper::Run {
     return error / settings_.tolerance;
   }
 
-  /// @return false if a problem was not solved.
-  bool take_segment() {
+  void take_segment() {
     double length = std::min({duration_ - report_.time, next_length_, settings_.longest_segment});
     std::vector<Wrench> loads;
     for (;;) {
-      bool lost = false;
-      if (!middle_loads(length, loads, lost)) {
-        return false;
-      }
-      const double error = lost ? 1e3 : relative_error(length, loads);
+      const double error = middle_loads(length, loads) ? relative_error(length, loads) : 1e3;
       if (error > 1.0 && length > kShortest) {
         length *= std::clamp(0.9 / std::cbrt(error), 0.1, 0.7);
         continue;
       }
       const std::vector<SegmentMotion> made = motions(loads);
       next_length_ = length * (error < 0.01 ? 2.0 : 1.2);
-      return finish_segment(free_length(made, length), made);
+      finish_segment(free_length(made, length), made);
+      return;
     }
   }
 
-  /// Up to where nothing new meets. The contact time's tolerance is far below what forces of second
-  /// order let a resting pair drift, so it may report such a pair; what else meets in the segment
-  /// is then looked for at its end, and found by bisection.
+  /// Up to where nothing new meets. Pairs that rest are looked at at the end alone, and what else
+  /// meets between them is found by bisection: forces of second order let them drift by more than
+  /// the contact time's tolerance.
   double free_length(const std::vector<SegmentMotion>& motions, double length) {
     const std::optional<FirstContact> first = first_contact(motions, length);
-    if (!first) {
-      return length;
-    }
-    const bool rests = std::any_of(held_.begin(), held_.end(), [&](const Contact& held) {
-      return std::minmax(held.body_a, held.body_b) == std::minmax(first->body_a, first->body_b);
-    });
-    if (!rests) {
-      return std::max(first->time, kShortest);
-    }
-    if (!something_new_overlaps(motions, length)) {
+    length = first ? std::max(first->time, kShortest) : length;
+    if (held_.empty() || !something_new_overlaps(motions, length)) {
       return length;
     }
     double free = 0.0;
@@ -325,11 +372,19 @@ class EventStepper::Run {
     return std::max(met, kShortest);
   }
 
+  /// Between bodies that rest on each other.
   bool something_new_overlaps(const std::vector<SegmentMotion>& motions, double t) {
     const State then = at(motions, t);
     find(then);
     return std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact& contact) {
-      return contact.gap <= 0.0 && !is_held(contact) && gap_velocity(bodies_, then, contact) < 0.0;
+      return contact.gap <= 0.0 && rests(contact.body_a, contact.body_b) && !is_held(contact) &&
+             gap_velocity(bodies_, then, contact) < 0.0;
+    });
+  }
+
+  [[nodiscard]] bool rests(int body_a, int body_b) const {
+    return std::any_of(held_.begin(), held_.end(), [&](const RestingContact& held) {
+      return std::minmax(held.contact.body_a, held.contact.body_b) == std::minmax(body_a, body_b);
     });
   }
 
@@ -340,83 +395,86 @@ class EventStepper::Run {
     for (const SegmentMotion& motion : motions) {
       pointers.push_back(&motion);
     }
-    return finder_.first_contact(pointers, length);
+    BodyPairs resting;
+    for (const RestingContact& held : held_) {
+      resting.push_back(std::minmax(held.contact.body_a, held.contact.body_b));
+    }
+    return finder_.first_contact(pointers, length, resting);
   }
 
-  bool finish_segment(double length, const std::vector<SegmentMotion>& motions) {
-    int broken = -1;
-    if (!find_break_up(motions, length, broken)) {
-      return false;
+  void finish_segment(double length, const std::vector<SegmentMotion>& motions) {
+    const RestingContact* broken = nullptr;
+    if (!support_.contacts.empty() && changes_at(motions, length, broken)) {
+      find_change(motions, length, broken);
     }
-    state_ = at(motions, length);
+    const State end = at(motions, length);
+    find(end);
+    for (RestingContact& held : held_) {
+      const auto now = std::find_if(contacts_.begin(), contacts_.end(), [&](const Contact& one) {
+        return signorini::find({held}, one) != nullptr;
+      });
+      held.turned_back = now != contacts_.end() && turns_back(held, *now, end);
+    }
+    state_ = end;
     const bool last = length >= duration_ - report_.time;
     report_.time = last ? duration_ : report_.time + length;
     ++report_.segments;
-    if (broken >= 0) {
-      const Contact& contact = support_.contacts[broken];
-      std::erase_if(held_, [&](const Contact& held) { return same(contact, held); });
+    if (broken != nullptr) {
+      const Contact& contact = broken->contact;
+      forget(contact);
       report_.events.push_back({.kind = EventKind::kBreakUp,
                                 .time = report_.time,
                                 .body_a = contact.body_a,
                                 .body_b = contact.body_b});
     }
-    return true;
   }
 
-  /// Shortens the segment to where a force that was > 0 became 0; broken: its contact.
-  bool find_break_up(const std::vector<SegmentMotion>& motions, double& length, int& broken) {
-    if (support_.contacts.empty()) {
-      return true;
-    }
-    if (!broken_at(motions, length, broken) || broken < 0) {
-      return report_.status == lcp::Status::kNotRun;
-    }
+  /// Shortens the segment to the first change.
+  void find_change(const std::vector<SegmentMotion>& motions, double& length,
+                   const RestingContact*& broken) {
     double whole = 0.0;
     while (length - whole > std::max(kTimeResolution, 1e-15 * length)) {
       const double middle = 0.5 * (whole + length);
-      int now = -1;
-      if (!broken_at(motions, middle, now)) {
-        return false;
-      }
-      if (now < 0) {
-        whole = middle;
-      } else {
+      const RestingContact* now = nullptr;
+      if (changes_at(motions, middle, now)) {
         length = middle;
         broken = now;
+      } else {
+        whole = middle;
       }
     }
-    return true;
   }
 
-  /// The first contact whose force was > 0 at the start and which does not push at t; -1: none.
-  bool broken_at(const std::vector<SegmentMotion>& motions, double t, int& broken) {
-    broken = -1;
+  /// Whether a contact of the segment's start no longer does at t what it did; broken: the first
+  /// that closed and does not push.
+  bool changes_at(const std::vector<SegmentMotion>& motions, double t,
+                  const RestingContact*& broken) {
+    broken = nullptr;
     const State then = at(motions, t);
     find(then);
-    Support now;
-    if (!support(then, now)) {
-      return false;
+    const Support now = support(then);
+    if (!lcp::is_solved(now.status)) {
+      return true;
     }
-    for (std::size_t i = 0; i < support_.contacts.size() && broken < 0; ++i) {
-      const bool pushed = support_.forces.forces[static_cast<lcp::Index>(i)] > 0.0;
-      if (pushed && !pushes(support_.contacts[i], now)) {
-        broken = static_cast<int>(i);
+    bool changes = false;
+    for (const RestingContact& one : support_.contacts) {
+      const RestingContact* other = signorini::find(now.contacts, one.contact);
+      const bool open = other == nullptr || other->mode == ContactMode::kOpens;
+      if (one.mode != ContactMode::kOpens && open) {
+        broken = &one;
+        return true;
       }
+      changes = changes || turns_back(one, other->contact, then) ||
+                (one.mode == ContactMode::kSticks && other->mode == ContactMode::kSlides);
     }
-    return true;
+    return changes;
   }
 
-  static bool pushes(const Contact& contact, const Support& support) {
-    for (std::size_t j = 0; j < support.contacts.size(); ++j) {
-      if (same(contact, support.contacts[j])) {
-        return support.forces.forces[static_cast<lcp::Index>(j)] > 0.0;
-      }
-    }
-    return false;
-  }
-
-  static bool same(const Contact& a, const Contact& b) {
-    return a.body_a == b.body_a && a.body_b == b.body_b && a.feature_id == b.feature_id;
+  /// Whether a contact that slid in the direction of its slip slips the other way then.
+  [[nodiscard]] bool turns_back(const RestingContact& start, const Contact& now,
+                                const State& then) const {
+    return start.mode == ContactMode::kSlides && !start.may_stick &&
+           tangential_slip(bodies_, then, now).dot(start.direction) <= 0.0;
   }
 
   const Bodies& bodies_;
@@ -426,9 +484,9 @@ class EventStepper::Run {
   double duration_;
   EventReport& report_;
   double next_length_;
-  ContactSet contacts_;  // touching, of the state looked at last
-  Support support_;      // of the segment's start
-  ContactSet held_;      // those of it that did not break
+  ContactSet contacts_;   // touching, of the state looked at last
+  Support support_;       // of the segment's start
+  RestingContacts held_;  // those of it that did not break
 };
 
 EventStepper::EventStepper(Bodies bodies, ContactFinder& finder, const EventSettings& settings)

@@ -356,8 +356,9 @@ TEST(ReducedModel, AThousandBodiesApartAddNoRowNoWorkAndNoAllocation) {
         inner_.find(near_, margin, contacts);
       }
       [[nodiscard]] std::optional<FirstContact> first_contact(std::span<const Motion* const> m,
-                                                              double t) override {
-        return inner_.first_contact(m, t);
+                                                              double t,
+                                                              RestingPairs resting) override {
+        return inner_.first_contact(m, t, resting);
       }
 
      private:

@@ -1,7 +1,7 @@
 #include <signorini/collision/collision_world.h>
 #include <signorini/core/response/event_stepper.h>
 
-#include "response_scenes.h"
+#include "event_world.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,50 +13,12 @@ namespace signorini {
 namespace {
 
 using collision::Box;
-using collision::Collider;
 using collision::CollisionWorld;
 using collision::HalfSpace;
 using collision::Sphere;
-using scenes::Scene;
-
-constexpr double kG = 9.81;
-
-Collider collider(int body, const collision::Shape& shape, double e) {
-  Collider made;
-  made.body = body;
-  made.shape = shape;
-  made.material.restitution = e;
-  return made;
-}
-
-/// A scene with shapes: body 0 is the ground, z <= 0.
-struct World {
-  Scene scene;
-  std::vector<Collider> colliders;
-  World() {
-    scene.add(scenes::fixed_body(), Vec3::Zero());
-    colliders.push_back(collider(0, HalfSpace{}, 1.0));
-  }
-  int add(const Body& body, const collision::Shape& shape, const Vec3& x, double e,
-          const Velocity& motion = {}) {
-    const int index = scene.add(body, x, motion);
-    colliders.push_back(collider(index, shape, e));
-    return index;
-  }
-  EventReport run(double duration, const EventSettings& settings = {}) {
-    CollisionWorld finder(scene.bodies, colliders, PairingRule::kMultiply);
-    EventStepper stepper(scene.bodies, finder, settings);
-    EventReport report;
-    stepper.advance(scene.state, duration, report);
-    EXPECT_TRUE(lcp::is_solved(report.status)) << report.detail;
-    return report;
-  }
-};
-
-int count(const EventReport& report, EventKind kind) {
-  return static_cast<int>(std::count_if(report.events.begin(), report.events.end(),
-                                        [kind](const Event& event) { return event.kind == kind; }));
-}
+using scenes::count;
+using scenes::kG;
+using scenes::World;
 
 TEST(EventStepper, ApexHeightsAreThoseOfTheRestitutionLaw) {
   const double height = 1.0;
@@ -152,15 +114,11 @@ TEST(EventStepper, ImpactsOfManyElasticBallsKeepTheEnergy) {
                  1 + 1.1 * (i / 9));
     world.add(scenes::ball(1.0, 0.5), Sphere{0.5}, x, 1.0);
   }
-  const auto energy = [&] {
-    return kinetic_energy(world.scene.bodies, world.scene.state) +
-           potential_energy(world.scene.bodies, world.scene.state, Vec3(0, 0, -kG));
-  };
-  const double before = energy();
+  const double before = world.energy(Vec3(0, 0, -kG));
   const EventReport report = world.run(1.0);
   EXPECT_GT(report.events.size(), 50u);
   EXPECT_LE(std::abs(report.energy_change_impacts), 1e-12 * before);
-  EXPECT_NEAR(energy(), before, 1e-12 * before);
+  EXPECT_NEAR(world.energy(Vec3(0, 0, -kG)), before, 1e-12 * before);
 }
 
 TEST(EventStepper, AMovingSupportCarriesItsLoad) {
@@ -180,7 +138,7 @@ TEST(EventStepper, ABallThatSlidesOffAFixedBallLeavesItWhereTheForceEnds) {
   // theta = 2/3 + v0^2/(3 g rho).
   World world;
   world.colliders.clear();
-  world.colliders.push_back(collider(0, Sphere{1.0}, 1.0));
+  world.colliders.push_back(scenes::collider(0, Sphere{1.0}, 1.0));
   const double rho = 1.25;
   const double v0 = 2.0;
   world.add(scenes::ball(1.0, 0.25), Sphere{0.25}, Vec3(0, 0, rho), 0.0,
@@ -195,10 +153,8 @@ TEST(EventStepper, ABallThatSlidesOffAFixedBallLeavesItWhereTheForceEnds) {
   ASSERT_EQ(count(report, EventKind::kBreakUp), 1);
   const double cosine = world.scene.state[1].x.z() / world.scene.state[1].x.norm();
   EXPECT_NEAR(cosine, 2.0 / 3.0 + v0 * v0 / (3.0 * kG * rho), 1e-3);
-  const double energy = kinetic_energy(world.scene.bodies, world.scene.state) +
-                        potential_energy(world.scene.bodies, world.scene.state, Vec3(0, 0, -kG));
   // Some 100 segments, each good to 1e-7 m or better in its own way.
-  EXPECT_NEAR(energy, 0.5 * v0 * v0 + kG * rho, 1e-4);
+  EXPECT_NEAR(world.energy(Vec3(0, 0, -kG)), 0.5 * v0 * v0 + kG * rho, 1e-4);
   EXPECT_NEAR(world.scene.state[1].x.norm(), rho, 2e-6);
 }
 
@@ -242,15 +198,14 @@ TEST(EventStepper, BadInputIsNamed) {
            [](EventSettings& s) { s.resting_speed = 0.0; },
            [](EventSettings& s) { s.separating_speed = 0.0; },
            [](EventSettings& s) { s.longest_segment = 0.0; },
-           [](EventSettings& s) { s.impact.friction = true; },
+           [](EventSettings& s) { s.sticking_speed = 0.0; },
            [](EventSettings& s) { s.most_events = 0; },
            [](EventSettings& s) { s.gravity.x() = std::nan(""); }}) {
     EventSettings bad;
     spoil(bad);
     EXPECT_THROW(bad.validate(), std::invalid_argument);
   }
-  world.colliders[0].material.friction = 0.5;
-  world.colliders[1].material.friction = 0.5;
+  world.colliders[1].material.rolling_friction = 0.1;
   CollisionWorld rough(world.scene.bodies, world.colliders, PairingRule::kMultiply);
   EventStepper refused(world.scene.bodies, rough, {});
   EXPECT_THROW(refused.advance(world.scene.state, 1.0, report), std::invalid_argument);

@@ -298,8 +298,8 @@ struct Anisotropic {
       }
     }
     std::optional<FirstContact> first_contact(std::span<const Motion* const> motions,
-                                              double duration) override {
-      return plane_.first_contact(motions, duration);
+                                              double duration, RestingPairs resting) override {
+      return plane_.first_contact(motions, duration, resting);
     }
 
    private:

@@ -34,8 +34,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 class NoContacts final : public ContactFinder {
  public:
   void find(const State&, double, ContactSet& contacts) override { contacts.clear(); }
-  [[nodiscard]] std::optional<FirstContact> first_contact(std::span<const Motion* const>,
-                                                          double) override {
+  [[nodiscard]] std::optional<FirstContact> first_contact(std::span<const Motion* const>, double,
+                                                          RestingPairs) override {
     return std::nullopt;
   }
 };

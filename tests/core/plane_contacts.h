@@ -88,8 +88,8 @@ class PlaneContacts final : public ContactFinder {
     }
   }
 
-  [[nodiscard]] std::optional<FirstContact> first_contact(std::span<const Motion* const>,
-                                                          double) override {
+  [[nodiscard]] std::optional<FirstContact> first_contact(std::span<const Motion* const>, double,
+                                                          RestingPairs) override {
     throw std::logic_error("PlaneContacts has no contact times");
   }
 

@@ -39,8 +39,8 @@ class GivenContacts final : public ContactFinder {
   void find(const State& state, double, ContactSet& contacts) override {
     contacts = contacts_(state);
   }
-  [[nodiscard]] std::optional<FirstContact> first_contact(std::span<const Motion* const>,
-                                                          double) override {
+  [[nodiscard]] std::optional<FirstContact> first_contact(std::span<const Motion* const>, double,
+                                                          RestingPairs) override {
     throw std::logic_error("GivenContacts has no contact times");
   }
 

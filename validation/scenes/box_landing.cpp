@@ -46,8 +46,9 @@ class ReorderedContacts final : public ContactFinder {
     for (Contact& contact : contacts) contact.material = material_;
   }
   [[nodiscard]] std::optional<FirstContact> first_contact(std::span<const Motion* const> motions,
-                                                          double duration) override {
-    return contacts_.first_contact(motions, duration);
+                                                          double duration,
+                                                          RestingPairs resting) override {
+    return contacts_.first_contact(motions, duration, resting);
   }
 
  private:
