@@ -86,6 +86,7 @@ void CollisionWorld::keep_at_most(int contacts_of_a_patch) {
                                 std::to_string(contacts_of_a_patch));
   }
   most_of_a_patch_ = contacts_of_a_patch;
+  known_.forget();
 }
 
 void CollisionWorld::find(const State& state, double margin, ContactSet& contacts) {
@@ -109,27 +110,46 @@ void CollisionWorld::find(const State& state, double margin, ContactSet& contact
 
   contacts.clear();
   loss_ = {};
-  for (const auto& [a, b] : pairs_) {
-    if (!may_touch(a, b)) {
+  pairs_asked_ = 0;
+  known_.begin(poses_, margin);
+  for (const std::pair<int, int>& pair : pairs_) {
+    if (!may_touch(pair.first, pair.second)) {
       continue;
     }
-    find_intersection(colliders_[a].shape, poses_[a], colliders_[b].shape, poses_[b], margin,
-                      found_);
-    if (most_of_a_patch_ != 0) {
-      const ReductionLoss loss = reduce_contacts(found_, most_of_a_patch_);
-      loss_.points += loss.points;
-      loss_.area_before += loss.area_before;
-      loss_.area_after += loss.area_after;
+    ReductionLoss loss;
+    std::span<const Contact> of_pair;
+    if (const KnownContacts::Pair* known = known_.look_up(pair)) {
+      loss = known->loss;
+      of_pair = known_.contacts(*known);
+    } else {
+      loss = ask(pair, margin);
+      of_pair = found_;
     }
-    for (Contact& contact : found_) {
-      contact.body_a = colliders_[a].body;
-      contact.body_b = colliders_[b].body;
-      contact.material = pair(colliders_[a].material, colliders_[b].material, rule_);
-      contact.friction_direction = friction_direction(a, b);
-      contact.feature_id = scene_feature_id(a, b, contact.feature_id);
-      contacts.push_back(contact);
-    }
+    loss_.points += loss.points;
+    loss_.area_before += loss.area_before;
+    loss_.area_after += loss.area_after;
+    contacts.insert(contacts.end(), of_pair.begin(), of_pair.end());
+    known_.keep(pair, loss, of_pair);
   }
+}
+
+/// The contacts of a pair, as find() gives them, into found_.
+ReductionLoss CollisionWorld::ask(const std::pair<int, int>& colliders, double margin) {
+  ++pairs_asked_;
+  const auto& [a, b] = colliders;
+  find_intersection(colliders_[a].shape, poses_[a], colliders_[b].shape, poses_[b], margin, found_);
+  ReductionLoss loss;
+  if (most_of_a_patch_ != 0) {
+    loss = reduce_contacts(found_, most_of_a_patch_);
+  }
+  for (Contact& contact : found_) {
+    contact.body_a = colliders_[a].body;
+    contact.body_b = colliders_[b].body;
+    contact.material = pair(colliders_[a].material, colliders_[b].material, rule_);
+    contact.friction_direction = friction_direction(a, b);
+    contact.feature_id = scene_feature_id(a, b, contact.feature_id);
+  }
+  return loss;
 }
 
 /// That of collider a, if it has one, else that of b; world axes.

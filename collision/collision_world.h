@@ -2,6 +2,7 @@
 
 #include <signorini/collision/broad_phase.h>
 #include <signorini/collision/contact_reduction.h>
+#include <signorini/collision/known_contacts.h>
 #include <signorini/collision/pair_filter.h>
 #include <signorini/collision/shape.h>
 #include <signorini/core/model/contact_finder.h>
@@ -19,7 +20,9 @@ namespace signorini::collision {
 /// features alone.
 ///
 /// Cost: the broad phase finds the pairs whose bounds overlap (broad_phase.h); each costs one pair
-/// query. Colliders without bounds (half-spaces) meet every other one. find() allocates nothing of
+/// query, but where neither collider has moved since the last find() (to the bit, as bodies asleep)
+/// its contacts are known. Colliders without bounds (half-spaces) meet every other one. find()
+/// allocates nothing of
 /// its own once no count exceeds an earlier one.
 class CollisionWorld final : public ContactFinder {
  public:
@@ -46,12 +49,15 @@ class CollisionWorld final : public ContactFinder {
   void keep_at_most(int contacts_of_a_patch);
   /// What the last find() left out; all 0 while every contact is kept.
   [[nodiscard]] const ReductionLoss& reduction_loss() const { return loss_; }
+  /// Pair queries of the last find().
+  [[nodiscard]] int pairs_asked() const { return pairs_asked_; }
 
   [[nodiscard]] const std::vector<Collider>& colliders() const { return colliders_; }
 
  private:
   [[nodiscard]] bool may_touch(int collider_a, int collider_b) const;
   [[nodiscard]] Vec3 friction_direction(int collider_a, int collider_b) const;
+  ReductionLoss ask(const std::pair<int, int>& colliders, double margin);
 
   std::vector<Collider> colliders_;
   std::vector<bool> is_dynamic_;  ///< by body
@@ -60,12 +66,14 @@ class CollisionWorld final : public ContactFinder {
   std::vector<std::uint8_t> is_immovable_;  ///< by collider
   int most_of_a_patch_ = 0;                 ///< 0: all
   ReductionLoss loss_;
+  int pairs_asked_ = 0;
 
   BroadPhase broad_phase_;  // from here on workspace
   std::vector<Pose> poses_;
   std::vector<Bounds> bounds_;
   std::vector<std::pair<int, int>> pairs_;
   std::vector<Contact> found_;
+  KnownContacts known_;
 };
 
 }  // namespace signorini::collision

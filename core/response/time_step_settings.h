@@ -58,7 +58,8 @@ struct TimeStepSettings {
   /// Threads that solve islands, >= 1: the same bits for any number. One where a recorder is told
   /// of the solves, whose order then stays.
   int threads = 1;
-  /// Bodies asleep have no rows, no forces and do not move; the finder still looks at them.
+  /// Bodies asleep have no rows, no forces and do not move; the finder is told nothing of it (a
+  /// CollisionWorld asks no pair that stands still).
   SleepSettings sleep = {};
   /// Every contact found has its rows, and all islands are one problem: what the reduced model is
   /// checked against.

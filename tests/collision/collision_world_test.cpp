@@ -219,6 +219,48 @@ TEST(CollisionWorld, AWarmStepAllocatesNothing) {
   EXPECT_GT(first, 50U);
 }
 
+bool is_same(const Contact& p, const Contact& q) {
+  return p.body_a == q.body_a && p.body_b == q.body_b && p.feature_id == q.feature_id &&
+         p.gap == q.gap && p.normal == q.normal && p.point_a == q.point_a &&
+         p.point_b == q.point_b && p.owner == q.owner;
+}
+
+// Whatever has moved since the last call, the contacts are those of a world that never found any.
+TEST(CollisionWorld, AsksOnlyPairsThatMovedAndFindsTheSame) {
+  Heap heap(60);
+  Random random(5);
+  CollisionWorld world(heap.bodies, heap.colliders, {});
+  ContactSet found;
+  world.find(heap.state, 0.05, found);
+  const int all = world.pairs_asked();
+  ASSERT_GT(all, 50);
+  for (int k = 0; k < 40; ++k) {
+    const double margin = k % 10 == 9 ? 0.1 : 0.05;
+    const int most = k < 20 ? 0 : 4;
+    if (k == 20) {
+      world.keep_at_most(most);
+    }
+    const std::size_t moved = k % 4 == 0 ? 0 : 1 + random() % 60;
+    if (moved != 0) {
+      heap.state[moved].x += Vec3(0.01, 0.0, 0.0);
+    }
+    const bool same_margin = k % 10 != 9 && (k % 10 != 0 || k == 0);
+    world.find(heap.state, margin, found);
+    if (same_margin && k != 20) {
+      EXPECT_LT(world.pairs_asked(), all / 2);
+      EXPECT_TRUE(moved != 0 || world.pairs_asked() == 0) << k;
+    }
+    CollisionWorld fresh(heap.bodies, heap.colliders, {});
+    fresh.keep_at_most(most);
+    ContactSet expected;
+    fresh.find(heap.state, margin, expected);
+    ASSERT_TRUE(std::equal(found.begin(), found.end(), expected.begin(), expected.end(), is_same))
+        << k;
+    EXPECT_EQ(world.reduction_loss().points, fresh.reduction_loss().points);
+    EXPECT_EQ(world.reduction_loss().area_before, fresh.reduction_loss().area_before);
+  }
+}
+
 TEST(CollisionWorld, CollidersSitWhereTheirLocalPosesPutThem) {
   const Bodies bodies{body_of(BodyKind::kFixed), body_of(BodyKind::kDynamic)};
   CollisionWorld world(

@@ -168,5 +168,33 @@ TEST(ContactSolverAllocation, NoneAfterWarmUp) {
   EXPECT_EQ(allocations.count(), 0);
 }
 
+// A hundred boxes asleep on the ground ask no pair; one that slides past wakes none and asks its
+// own.
+TEST(SleepingBodies, CostNoPairQuery) {
+  Scene scene;
+  scene.add_ground(collision::Box{Vec3(50.0, 50.0, 5.0)});
+  const Vec3 half = Vec3::Constant(0.5);
+  for (int k = 0; k < 100; ++k) {
+    scene.add(box_body(1.0, half), collision::Box{half}, Vec3(2.0 * (k % 10), 2.0 * (k / 10), 0.5));
+  }
+  CollisionWorld world(scene.bodies, scene.colliders, {});
+  TimeStepSettings settings;
+  settings.accuracy = Accuracy::engineering();
+  settings.sleep.after = 0.05;
+  TimeStepper stepper(scene.bodies, world, settings);
+  StepReport report;
+  for (int k = 0; k < 40; ++k) {
+    stepper.step(scene.state, report);
+  }
+  ASSERT_EQ(report.bodies_asleep, 100);
+  EXPECT_EQ(report.contacts_asleep, 400);
+  scene.state[100].p = Vec3(1.0, 0.0, 0.0);
+  stepper.wake(100);
+  stepper.step(scene.state, report);
+  stepper.step(scene.state, report);
+  EXPECT_EQ(report.bodies_asleep, 99);
+  EXPECT_EQ(world.pairs_asked(), 1);
+}
+
 }  // namespace
 }  // namespace signorini
