@@ -159,10 +159,11 @@ class Judge {
       off_by(PairProperty::kNothingBeyond, d_ - margin_);
     }
     // N may part the shapes by the preference less than the best direction does, and the least gap
-    // be the preference more than the distance.
-    off_by(PairProperty::kCertified, std::abs(separation(pair_, N) - least),
-           allowed_ + 2.0 * preference_);
-    off_by(PairProperty::kCertified, std::abs(d_ - least));
+    // be the preference from that, either way: above it where the deepest point lies beside the
+    // face, below it where a point does.
+    const double twice = allowed_ + 2.0 * preference_;
+    off_by(PairProperty::kCertified, std::abs(separation(pair_, N) - least), twice);
+    off_by(PairProperty::kCertified, std::abs(d_ - least), twice);
     for (const Vec3& n : directions_about(N, random_)) {
       const double s = separation(pair_, n);
       if (std::isfinite(s)) {

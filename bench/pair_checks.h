@@ -41,8 +41,8 @@ struct JudgedPair {
 /// Allowed of a distance, of the smaller size: 1e-9 between sphere, box and half-space, 1e-8
 /// between pairs that are found by a search (convex_pairs.h); and 200 roundings of the pair's
 /// numbers. Where faces are preferred by a tolerance (box_separation.h, separation.h: 1e-6) once
-/// that tolerance more of a gap, and twice of a point, of the separation along N and of the
-/// distance of shapes that were moved to touch.
+/// that tolerance more of a gap, and twice of a point, of the least gap beside the separation along
+/// N and the distance, and of the distance of shapes that were moved to touch.
 [[nodiscard]] JudgedPair judge_pair(const collision::testing::PlacedPair& pair, double margin,
                                     collision::testing::Random& random);
 

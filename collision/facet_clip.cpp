@@ -121,6 +121,24 @@ void clip_at(const Facet& incident, const Facet& reference, int k, double slack,
   std::swap(polygon, clipped);
 }
 
+/// A point of an edge of the reference polygon that lies beyond its end (by less than the slack
+/// beside the next edge, which is far at an acute corner) goes to that corner.
+void pull_to_corner(const Facet& incident, const Facet& reference, ClipCorner& corner) {
+  const int k = corner.on_reference;
+  if (k < 0) {
+    return;
+  }
+  const int count = static_cast<int>(reference.corners.size());
+  for (const int neighbour : {(k + count - 1) % count, (k + 1) % count}) {
+    if (Side(reference, neighbour).excess(corner.point) > 0.0) {
+      corner.corner_of_reference = neighbour == (k + 1) % count ? neighbour : k;
+      corner.point = onto_plane(reference.corners[corner.corner_of_reference].point,
+                                reference.normal, incident);
+      return;
+    }
+  }
+}
+
 void clip_polygons(const Facet& incident, const Facet& reference, double slack,
                    std::vector<FacetPoint>& points) {
   thread_local Polygons polygons;
@@ -136,7 +154,8 @@ void clip_polygons(const Facet& incident, const Facet& reference, double slack,
   for (int k = 0; k < static_cast<int>(reference.corners.size()); ++k) {
     clip_at(incident, reference, k, slack, polygons);
   }
-  for (const ClipCorner& corner : polygon) {
+  for (ClipCorner& corner : polygon) {
+    pull_to_corner(incident, reference, corner);
     Feature feature = reference.face;
     if (corner.corner_of_reference >= 0) {
       feature = reference.corners[corner.corner_of_reference].feature;
