@@ -2,7 +2,7 @@
 
 #include <signorini/lcp/solver.h>
 
-#include "bench/stopwatch.h"
+#include "tools/stopwatch.h"
 
 #include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
 #include <BulletDynamics/ConstraintSolver/btNNCGConstraintSolver.h>
@@ -135,7 +135,7 @@ Solver our_solver(std::string_view name, double tolerance) {
             return [&group, work](Report& report) {
               Workspace& w = *work;
               w.set.read(group);
-              const Stopwatch stopwatch;
+              const tools::Stopwatch stopwatch;
               w.solver->solve(w.set.asked(), w.result);
               report.solve_seconds = stopwatch.seconds();
               w.set.write(group, w.result.z);
@@ -181,7 +181,7 @@ std::string run_in_this_process(const Solver& solver, const BulletGroup& group,
     start.restore(group);
     forget_impulses(group);
     Report once;
-    const Stopwatch stopwatch;
+    const tools::Stopwatch stopwatch;
     call(once);
     once.seconds = stopwatch.seconds();
     if (once.seconds < report.seconds) {
@@ -198,10 +198,10 @@ std::string run_in_this_process(const Solver& solver, const BulletGroup& group,
   return {reinterpret_cast<const char*>(&report), sizeof report};
 }
 
-BulletSetRun to_run(const ChildAnswer& child) {
+BulletSetRun to_run(const tools::ChildAnswer& child) {
   BulletSetRun run;
-  if (child.end != ChildEnd::kAnswered) {
-    run.outcome.assign(1, child.end == ChildEnd::kTimedOut ? 'T' : 'C');
+  if (child.end != tools::ChildEnd::kAnswered) {
+    run.outcome.assign(1, child.end == tools::ChildEnd::kTimedOut ? 'T' : 'C');
     return run;
   }
   Report report;
@@ -318,7 +318,7 @@ std::vector<BulletSetRun> run_bullet_sets(const BulletSetsOptions& options,
       BulletContacts contacts;
       contacts.read(group);
       for (const Solver& solver : all_solvers(group, options.tolerance)) {
-        if (children_are_stopped()) {
+        if (tools::children_are_stopped()) {
           return;
         }
         if (progress != nullptr) {
@@ -326,7 +326,7 @@ std::vector<BulletSetRun> run_bullet_sets(const BulletSetsOptions& options,
                                    solver.name)
                     << std::flush;
         }
-        BulletSetRun run = to_run(run_in_child(
+        BulletSetRun run = to_run(tools::run_in_child(
             [&](const std::function<void()>& loaded) {
               loaded();
               return run_in_this_process(solver, group, start, options.repeats);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bench/bullet_capture.h"
-#include "bench/child_process.h"
+#include "tools/child_process.h"
 
 #include <iosfwd>
 #include <memory>
@@ -55,7 +55,7 @@ struct BulletSetsOptions {
   double friction = 0.0;     ///< mu
   double tolerance = 1e-11;  ///< asked of our solvers
   int repeats = 20;
-  ChildLimits limits = {.seconds = 20.0};
+  tools::ChildLimits limits = {.seconds = 20.0};
 };
 
 /// Bullet's solvers (SI 10, 50, 200, 1000, NNCG 200, Dantzig, Lemke; with friction also SI 200 and

@@ -3,8 +3,8 @@
 #include <signorini/lcp/certificate.h>
 #include <signorini/lcp/solve_recorder.h>
 
-#include "bench/child_process.h"
 #include "bench/thread_time.h"
+#include "tools/child_process.h"
 
 #include <algorithm>
 #include <cmath>
@@ -107,7 +107,7 @@ ExtremesRow run_cell(const ExtremeCell& cell, const ExtremeContestant& contestan
                   .contestant = contestant.player.name,
                   .is_ours = contestant.player.is_ours};
   row.error = row.residual = std::numeric_limits<double>::quiet_NaN();
-  const ChildAnswer answer = run_in_child(
+  const tools::ChildAnswer answer = tools::run_in_child(
       [&](const std::function<void()>& loaded) {
         const ExtremeScene extreme = cell.make(contestant.has_friction);
         loaded();
@@ -115,9 +115,9 @@ ExtremesRow run_cell(const ExtremeCell& cell, const ExtremeContestant& contestan
       },
       {.seconds = cap});
   row.reason = answer.reason;
-  if (answer.end != ChildEnd::kAnswered) {
+  if (answer.end != tools::ChildEnd::kAnswered) {
     row.verdict =
-        answer.end == ChildEnd::kTimedOut ? ExtremeVerdict::kTime : ExtremeVerdict::kCrashed;
+        answer.end == tools::ChildEnd::kTimedOut ? ExtremeVerdict::kTime : ExtremeVerdict::kCrashed;
     return row;
   }
   const Played played = Played::from_text(answer.answer);

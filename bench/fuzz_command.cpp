@@ -1,8 +1,8 @@
 #include "bench/fuzz_command.h"
 
-#include "bench/child_process.h"
 #include "bench/fuzz_study.h"
 #include "bench/write_csv.h"
+#include "tools/child_process.h"
 
 #include <CLI/CLI.hpp>
 #include <csignal>
@@ -64,8 +64,8 @@ int FuzzCommand::run() const {
   if (!folder.empty()) {
     std::filesystem::create_directories(folder);
   }
-  std::signal(SIGINT, [](int) { stop_children(); });
-  std::signal(SIGTERM, [](int) { stop_children(); });
+  std::signal(SIGINT, [](int) { tools::stop_children(); });
+  std::signal(SIGTERM, [](int) { tools::stop_children(); });
   const FuzzCounts counts = run_fuzz_study(options_->study, std::cout);
   write_csv(folder, "fuzz", counts.to_csv());
   if (counts.is_interrupted) {

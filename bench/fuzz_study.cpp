@@ -2,10 +2,10 @@
 
 #include <signorini/lcp/solver.h>
 
-#include "bench/child_process.h"
 #include "bench/claim_judge.h"
 #include "bench/fuzz_problems.h"
 #include "bench/rational_judge.h"
+#include "tools/child_process.h"
 
 #include <algorithm>
 #include <array>
@@ -131,21 +131,21 @@ class SolverRun {
   Part run_in_children(std::int64_t first, std::int64_t end, FuzzCounts& counts) {
     Part sum;
     SharedIndex at;
-    const ChildLimits limits{.seconds = options_.hang_seconds,
-                             .loading_seconds = options_.hang_seconds + 60.0};
+    const tools::ChildLimits limits{.seconds = options_.hang_seconds,
+                                    .loading_seconds = options_.hang_seconds + 60.0};
     while (first < end && !counts.is_interrupted) {
       at.value() = first;
-      const ChildAnswer answer = run_in_child(
+      const tools::ChildAnswer answer = tools::run_in_child(
           [&](const std::function<void()>& alive) {
             alive();
             return to_text(run(first, end, at.value(), alive));
           },
           limits);
-      if (answer.end == ChildEnd::kAnswered) {
+      if (answer.end == tools::ChildEnd::kAnswered) {
         sum.add(from_text(answer.answer));
         return sum;
       }
-      if (answer.end == ChildEnd::kInterrupted) {
+      if (answer.end == tools::ChildEnd::kInterrupted) {
         counts.is_interrupted = true;
         return sum;
       }
@@ -231,8 +231,8 @@ class SolverRun {
                        solver_.name, index, drawn.recipe, drawn.problem.size());
   }
 
-  void count_culprit(std::int64_t index, const ChildAnswer& answer, Part& part) const {
-    const bool hangs = answer.end == ChildEnd::kTimedOut;
+  void count_culprit(std::int64_t index, const tools::ChildAnswer& answer, Part& part) const {
+    const bool hangs = answer.end == tools::ChildEnd::kTimedOut;
     (hangs ? part.row.hangs : part.row.crashes) += 1;
     part.complain(where(index, draw_fuzz_problem(options_.seed, index)) +
                   (hangs ? fmt::format(": hangs for {} s", options_.hang_seconds)

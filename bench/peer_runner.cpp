@@ -1,6 +1,6 @@
 #include "bench/peer_runner.h"
 
-#include "bench/stopwatch.h"
+#include "tools/stopwatch.h"
 
 #include <algorithm>
 #include <array>
@@ -108,7 +108,7 @@ bool meets(const lcp::Certificate& certificate, double tolerance) {
 
 double solve_once(Peer& peer, PeerAnswer& answer) {
   peer.rewind();
-  const Stopwatch stopwatch;
+  const tools::Stopwatch stopwatch;
   peer.solve(answer);
   return stopwatch.seconds();
 }
@@ -149,12 +149,12 @@ TimedAnswer solve_with_enough_sweeps(Peer& peer, const lcp::Problem& judged, dou
   }
 }
 
-Verdict verdict_without_answer(ChildEnd end) {
+Verdict verdict_without_answer(tools::ChildEnd end) {
   switch (end) {
-    case ChildEnd::kTimedOut: return Verdict::kTimedOut;
-    case ChildEnd::kInterrupted: return Verdict::kInterrupted;
-    case ChildEnd::kCrashed:
-    case ChildEnd::kAnswered: break;
+    case tools::ChildEnd::kTimedOut: return Verdict::kTimedOut;
+    case tools::ChildEnd::kInterrupted: return Verdict::kInterrupted;
+    case tools::ChildEnd::kCrashed:
+    case tools::ChildEnd::kAnswered: break;
   }
   return Verdict::kCrashed;
 }
@@ -203,7 +203,7 @@ PeerRun run_peer(const PeerEntry& entry, const lcp::Problem& given, const lcp::P
       return run;
     }
   }
-  const ChildWork work = [&](const std::function<void()>& loaded) {
+  const tools::ChildWork work = [&](const std::function<void()>& loaded) {
     const std::unique_ptr<Peer> peer = entry.make(settings);
     peer->load(given);
     loaded();
@@ -211,8 +211,8 @@ PeerRun run_peer(const PeerEntry& entry, const lcp::Problem& given, const lcp::P
                         ? solve_with_enough_sweeps(*peer, judged, settings.tolerance, limits)
                         : solve_repeatedly(*peer, limits));
   };
-  const ChildAnswer child = run_in_child(work, limits.child);
-  if (child.end != ChildEnd::kAnswered) {
+  const tools::ChildAnswer child = tools::run_in_child(work, limits.child);
+  if (child.end != tools::ChildEnd::kAnswered) {
     run.verdict = verdict_without_answer(child.end);
     run.said = child.reason;
     return run;

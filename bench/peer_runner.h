@@ -2,8 +2,8 @@
 
 #include <signorini/lcp/certificate.h>
 
-#include "bench/child_process.h"
 #include "bench/peer.h"
+#include "tools/child_process.h"
 
 #include <string_view>
 
@@ -34,7 +34,7 @@ enum class Verdict : unsigned char {
                                    double tolerance);
 
 struct RunLimits {
-  ChildLimits child;
+  tools::ChildLimits child;
   int repeats = 5;               ///< of short solves, at least; the minimum counts
   double short_seconds = 0.1;    ///< longer solves are timed once
   double repeat_seconds = 0.02;  ///< short solves are repeated for at least this long

@@ -2,11 +2,11 @@
 
 #include <signorini/lcp/io/whole_file.h>
 
-#include "bench/child_process.h"
 #include "bench/contact_families.h"
 #include "bench/peers_study.h"
 #include "bench/peers_table.h"
 #include "bench/write_csv.h"
+#include "tools/child_process.h"
 
 #ifdef SIGNORINI_PEER_BULLET
 #include "bench/bullet_sets.h"
@@ -30,7 +30,7 @@ constexpr int kWrongClaim = 1;
 constexpr int kInterrupted = 130;
 
 void on_interrupt(int /*signal*/) {
-  stop_children();
+  tools::stop_children();
 }
 
 /// Interrupts end the running child and the study; what was measured is still written.
@@ -159,7 +159,7 @@ int PeersCommand::run() const {
     o.problems.at_rest = true;
   }
   o.study.regularised = !o.without_regularised;
-  o.study.settings.time_limit = kWallTimes * o.study.limits.child.seconds;
+  o.study.settings.time_limit = tools::kWallTimes * o.study.limits.child.seconds;
   o.study.limits.child.loading_seconds = o.study.limits.child.seconds + 60.0;
   o.study.limits.child.bytes = static_cast<std::size_t>(o.memory_gib * 1024.0 * 1024.0 * 1024.0);
   const std::vector<PeerProblem> problems = peer_problems(o.problems);
@@ -246,7 +246,7 @@ int BulletSetsCommand::run() const {
       "assembly, certificate and "
       "writing back; Bullet's its own setup and (idle) friction rows.\n");
   write_csv(o.out, "bullet-sets", bullet_sets_csv(runs));
-  return children_are_stopped() ? kInterrupted : kClaimsHold;
+  return tools::children_are_stopped() ? kInterrupted : kClaimsHold;
 #else
   fmt::print(stderr, "signorini-bench bullet-sets: this build has no Bullet (libbullet-dev)\n");
   return 70;

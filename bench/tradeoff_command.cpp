@@ -2,8 +2,8 @@
 
 #include <signorini/lcp/io/whole_file.h>
 
-#include "bench/child_process.h"
 #include "bench/tradeoff.h"
+#include "tools/child_process.h"
 
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -24,7 +24,7 @@ constexpr int kWrong = 1;
 constexpr int kStopped = 130;
 
 void on_interrupt(int /*signal*/) {
-  stop_children();
+  tools::stop_children();
 }
 
 /// A line of PeersStudy's progress, with the position of the dial and the time that is left if the
@@ -113,7 +113,7 @@ int TradeoffCommand::run() const {
   Options& o = *options_;
   if (o.problems.families == std::vector<std::string>{"none"}) o.problems.families.clear();
   o.problems.folders.assign(o.folders.begin(), o.folders.end());
-  o.study.settings.time_limit = kWallTimes * o.study.limits.child.seconds;
+  o.study.settings.time_limit = tools::kWallTimes * o.study.limits.child.seconds;
   o.study.limits.child.loading_seconds = o.study.limits.child.seconds + 60.0;
   const std::vector<PeerEntry> entries = all_peers();
   const std::vector<PeerProblem> problems = peer_problems(o.problems);

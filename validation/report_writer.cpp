@@ -2,7 +2,8 @@
 #include <signorini/validation/report_json.h>
 #include <signorini/validation/report_markdown.h>
 #include <signorini/validation/report_page.h>
-#include <signorini/validation/whole_file.h>
+
+#include "tools/whole_file.h"
 
 #include <cmath>
 #include <filesystem>
@@ -88,7 +89,7 @@ std::vector<std::string> write_report(const Report& report, const std::string& f
   for (const auto& [name, text] : files) {
     const std::filesystem::path file = std::filesystem::path(folder) / name;
     create_folder(file.parent_path());
-    write_whole_file(file, text);
+    tools::write_whole_file(file, text);
     written.push_back(file.string());
   }
   return written;

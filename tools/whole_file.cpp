@@ -1,4 +1,4 @@
-#include <signorini/validation/whole_file.h>
+#include "tools/whole_file.h"
 
 #include <cerrno>
 #include <cstdio>
@@ -8,7 +8,7 @@
 #include <unistd.h>
 #include <utility>
 
-namespace signorini::validation {
+namespace signorini::tools {
 namespace {
 
 /// Removes the partial file unless it has been renamed.
@@ -59,4 +59,4 @@ void write_whole_file(const std::filesystem::path& file, std::string_view text) 
   if (const std::error_code error = partial.rename_to(file)) fail(file, error);
 }
 
-}  // namespace signorini::validation
+}  // namespace signorini::tools

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <ctime>
 
-namespace signorini::bench {
+namespace signorini::tools {
 
 /// Seconds since it was made: wall time, or this process's CPU time where that is less, because
 /// others had the processor meanwhile. (The CPU clock is slow to read, so that wall time is the
@@ -27,4 +27,4 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-}  // namespace signorini::bench
+}  // namespace signorini::tools

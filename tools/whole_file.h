@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string_view>
 
-namespace signorini::validation {
+namespace signorini::tools {
 
 /// Write a file whole or not at all: the text goes to a new file beside it (the same name with
 /// ".partial-" and the process id), which is renamed over the old one once all of it is written.
@@ -12,4 +12,4 @@ namespace signorini::validation {
 ///   before, and nothing is left beside it.
 void write_whole_file(const std::filesystem::path& file, std::string_view text);
 
-}  // namespace signorini::validation
+}  // namespace signorini::tools

@@ -1,4 +1,4 @@
-#include "bench/child_process.h"
+#include "tools/child_process.h"
 
 #include <cerrno>
 #include <chrono>
@@ -21,7 +21,7 @@
 #define SIGNORINI_SANITIZED 1
 #endif
 
-namespace signorini::bench {
+namespace signorini::tools {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -91,6 +91,9 @@ void limit_resources(const ChildLimits& limits) {
   const rlimit no_core = {0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
 #ifndef SIGNORINI_SANITIZED
+  if (limits.bytes == kAnyMemory) {
+    return;
+  }
   const std::size_t bytes = address_space_in_use() + limits.bytes;
   const rlimit space = {bytes, bytes};
   ::setrlimit(RLIMIT_AS, &space);
@@ -275,4 +278,4 @@ bool children_are_stopped() {
   return stopped != 0;
 }
 
-}  // namespace signorini::bench
+}  // namespace signorini::tools

@@ -1,4 +1,4 @@
-#include "bench/child_process.h"
+#include "tools/child_process.h"
 
 #include <csignal>
 #include <cstdio>
@@ -8,7 +8,7 @@
 #include <unistd.h>
 #include <vector>
 
-namespace signorini::bench {
+namespace signorini::tools {
 namespace {
 
 using Loaded = std::function<void()>;
@@ -116,4 +116,4 @@ TEST(ChildProcessStopped, EndsTheRunningChildAndEveryLaterOne) {
 }
 
 }  // namespace
-}  // namespace signorini::bench
+}  // namespace signorini::tools

@@ -2,20 +2,22 @@
 
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <string>
 #include <string_view>
 
-namespace signorini::bench {
+namespace signorini::tools {
 
 /// What work in a child process may use. Times are CPU times, so that a busy machine does not end
 /// anyone early; a child that waits without computing ends after kWallTimes as much wall time.
 struct ChildLimits {
   double seconds = 60.0;          ///< from the first report to the answer, > 0
   double loading_seconds = 60.0;  ///< up to the first report, > 0
-  /// Address space on top of what the parent uses. Not enforced under the sanitizers, whose shadow
-  /// memory is larger than any limit.
+  /// Address space on top of what the parent uses; kAnyMemory: no limit. Not enforced under the
+  /// sanitizers, whose shadow memory is larger than any limit.
   std::size_t bytes = std::size_t{4} << 30;
 };
+inline constexpr std::size_t kAnyMemory = std::numeric_limits<std::size_t>::max();
 inline constexpr double kWallTimes = 5.0;
 
 /// How a child ended.
@@ -51,4 +53,4 @@ void stop_children();
 /// True after stop_children().
 [[nodiscard]] bool children_are_stopped();
 
-}  // namespace signorini::bench
+}  // namespace signorini::tools
