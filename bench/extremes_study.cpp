@@ -4,6 +4,7 @@
 #include <signorini/lcp/solve_recorder.h>
 
 #include "bench/thread_time.h"
+#include "tools/byte_archive.h"
 #include "tools/child_process.h"
 
 #include <algorithm>
@@ -16,6 +17,12 @@
 #include <utility>
 
 namespace signorini::bench {
+
+void visit_fields(auto& archive, tools::Reflects<ExtremesRow> auto& row) {
+  archive(row.axis, row.value, row.mass_ratio, row.contestant, row.is_ours, row.verdict, row.error,
+          row.residual, row.status, row.seconds, row.reason);
+}
+
 namespace {
 
 constexpr double kPassError = 1e-6;
@@ -157,6 +164,58 @@ void print_head(const std::string& axis, const AxisCells& values, std::ostream& 
   out << "\n";
 }
 
+/// A contestant on an axis: a job, and a line of the map.
+struct Line {
+  std::string axis;
+  AxisCells values;
+  const ExtremeContestant* contestant;
+
+  [[nodiscard]] std::string name() const { return axis + ": " + contestant->player.name; }
+  [[nodiscard]] std::vector<ExtremesRow> run(double cap) const {
+    std::vector<ExtremesRow> rows;
+    for (const auto& same_value : values) {
+      for (const ExtremeCell* cell : same_value) {
+        rows.push_back(run_cell(*cell, *contestant, cap));
+      }
+    }
+    return rows;
+  }
+};
+
+/// Axis by axis, the contestants that take part in it.
+std::vector<Line> lines_of(const ExtremesOptions& options, const std::vector<ExtremeCell>& cells,
+                           const std::vector<ExtremeContestant>& contestants) {
+  std::vector<Line> lines;
+  std::string last;
+  for (const ExtremeCell& cell : cells) {
+    if (cell.axis == last || cell.axis.find(options.axis) == std::string::npos) {
+      continue;
+    }
+    last = cell.axis;
+    const AxisCells values = by_value(cells, cell.axis);
+    for (const ExtremeContestant& contestant : contestants) {
+      if (contestant.player.name.find(options.contestant) != std::string::npos &&
+          (contestant.has_friction || values.front().front()->takes_no_friction)) {
+        lines.push_back({cell.axis, values, &contestant});
+      }
+    }
+  }
+  return lines;
+}
+
+void print_line(const Line& line, const std::vector<ExtremesRow>& rows, std::ostream& out) {
+  out << fmt::format("{:{}}", line.contestant->player.name, kNameWidth);
+  std::size_t next = 0;
+  for (const auto& same_value : line.values) {
+    std::string letters;
+    for (std::size_t i = 0; i < same_value.size(); ++i) {
+      letters += letter(rows[next++].verdict);
+    }
+    out << fmt::format("{:<{}}", letters, kColumn);
+  }
+  out << "\n";
+}
+
 std::string what_it_was(const ExtremesRow& row) {
   return fmt::format("{} = {:g}, mass ratio {:g}: {} (error {:.1e}, residual {:.1e}, {}){}",
                      row.axis, row.value, row.mass_ratio, letter(row.verdict), row.error,
@@ -259,7 +318,8 @@ bool ExtremesReport::passed() const {
   });
   const Count all = count(kReferencePosition, 1e4);
   const Count most = count(kReferencePosition, 1e9);
-  return !defects && all.passed == all.cells && 10 * most.passed >= 9 * most.cells;
+  return !defects && failure.empty() && all.passed == all.cells &&
+         10 * most.passed >= 9 * most.cells;
 }
 
 std::string ExtremesReport::to_csv() const {
@@ -273,43 +333,57 @@ std::string ExtremesReport::to_csv() const {
   return csv;
 }
 
+std::vector<tools::Job> extremes_jobs(const ExtremesOptions& options,
+                                      const std::vector<ExtremeCell>& cells,
+                                      const std::vector<ExtremeContestant>& contestants) {
+  std::vector<tools::Job> jobs;
+  for (Line& line : lines_of(options, cells, contestants)) {
+    const std::string name = line.name();
+    jobs.push_back({name, [line = std::move(line), cap = options.cap] {
+                      return tools::to_bytes(line.run(cap));
+                    }});
+  }
+  return jobs;
+}
+
 ExtremesReport run_extremes_study(const ExtremesOptions& options,
                                   const std::vector<ExtremeCell>& cells,
                                   const std::vector<ExtremeContestant>& contestants,
                                   std::ostream& out) {
-  out << "P pass, d degraded, F fail, t out of time, N not a number, X crash, W wrongly solved;\n"
-         "under each value mass ratios 1, 1e4 and 1e9, the heavy body on top (on the axes of the\n"
-         "mass ratio: one).\n";
+  const std::vector<Line> lines = lines_of(options, cells, contestants);
+  const std::vector<tools::Job> jobs = extremes_jobs(options, cells, contestants);
+  const tools::JobListResult result = tools::run_job_list(jobs, options.jobs);
   ExtremesReport report;
-  std::vector<std::string> axes;
-  for (const ExtremeCell& cell : cells) {
-    if (cell.axis.find(options.axis) != std::string::npos &&
-        (axes.empty() || axes.back() != cell.axis)) {
-      axes.push_back(cell.axis);
-    }
+  report.is_leader = result.is_leader;
+  if (!result.is_leader) {
+    return report;
   }
-  for (const std::string& axis : axes) {
-    const AxisCells values = by_value(cells, axis);
-    print_head(axis, values, out);
-    for (const ExtremeContestant& contestant : contestants) {
-      if (contestant.player.name.find(options.contestant) == std::string::npos ||
-          (!contestant.has_friction && !values.front().front()->takes_no_friction)) {
-        continue;
-      }
-      out << fmt::format("{:{}}", contestant.player.name, kNameWidth);
-      for (const auto& same_value : values) {
-        std::string letters;
-        for (const ExtremeCell* cell : same_value) {
-          report.rows.push_back(run_cell(*cell, contestant, options.cap));
-          letters += letter(report.rows.back().verdict);
-        }
-        out << fmt::format("{:<{}}", letters, kColumn);
-      }
-      out << "\n";
-      out.flush();
+  report.is_interrupted = result.is_interrupted;
+  report.failure = result.first_failure(jobs);
+  out << result.remark()
+      << ". P pass, d degraded, F fail, t out of time, N not a number, X crash,\n"
+      << "W wrongly solved; under each value mass ratios 1, 1e4 and 1e9, the heavy body on top (on "
+         "the\naxes of the mass ratio: one).\n";
+  std::string axis;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (!result.jobs[i].is_done) {
+      continue;
     }
+    if (lines[i].axis != axis) {
+      axis = lines[i].axis;
+      print_head(axis, lines[i].values, out);
+    }
+    const auto rows = tools::from_bytes<std::vector<ExtremesRow>>(result.jobs[i].bytes);
+    print_line(lines[i], rows, out);
+    report.rows.insert(report.rows.end(), rows.begin(), rows.end());
   }
   print_summary(report, contestants, out);
+  if (report.is_interrupted) {
+    out << "PARTIAL: interrupted; the same command goes on where it was\n";
+  }
+  if (!report.failure.empty()) {
+    out << "a job failed: " << report.failure << "\n";
+  }
   return report;
 }
 

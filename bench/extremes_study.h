@@ -2,6 +2,7 @@
 
 #include "bench/extreme_scenes.h"
 #include "bench/scene_player.h"
+#include "tools/job_list.h"
 
 #include <cstdint>
 #include <iosfwd>
@@ -38,9 +39,10 @@ struct ExtremeContestant {
 [[nodiscard]] std::vector<ExtremeContestant> extreme_contestants();
 
 struct ExtremesOptions {
-  double cap = 1.0;             ///< CPU seconds of a cell, > 0
-  std::string axis = {};        ///< only axes whose names contain this; empty: all
-  std::string contestant = {};  ///< the same of contestants
+  double cap = 1.0;                 ///< CPU seconds of a cell, > 0
+  std::string axis = {};            ///< only axes whose names contain this; empty: all
+  std::string contestant = {};      ///< the same of contestants
+  tools::JobListOptions jobs = {};  ///< a job: a contestant on the cells of an axis
 };
 
 struct ExtremesRow {
@@ -59,6 +61,9 @@ struct ExtremesRow {
 
 struct ExtremesReport {
   std::vector<ExtremesRow> rows;
+  bool is_interrupted = false;  ///< cells are missing
+  bool is_leader = true;        ///< else another rank has the rows
+  std::string failure = {};     ///< of the first job that failed
 
   /// Cells of this contestant up to a mass ratio, and those of them that it passed.
   struct Count {
@@ -66,8 +71,8 @@ struct ExtremesReport {
     int passed = 0;
   };
   [[nodiscard]] Count count(const std::string& contestant, double mass_ratio) const;
-  /// No defect of ours, and the reference position passes every cell up to a mass ratio of 1e4 and
-  /// 90 % of all up to 1e9.
+  /// No defect of ours, no job failed, and the reference position passes every cell up to a mass
+  /// ratio of 1e4 and 90 % of all up to 1e9.
   [[nodiscard]] bool passed() const;
   [[nodiscard]] std::string to_csv() const;
 };
@@ -76,10 +81,16 @@ struct ExtremesReport {
 inline constexpr const char* kReferencePosition = "dial: reference";
 
 /// Plays the cells, each in a child process under the cap, prints the map axis by axis, then what
-/// each contestant passed and the cells of the reference position that are no pass.
+/// each contestant passed and the cells of the reference position that are no pass. Finished jobs
+/// are kept (ExtremesOptions::jobs) until the caller forgets them.
 [[nodiscard]] ExtremesReport run_extremes_study(const ExtremesOptions& options,
                                                 const std::vector<ExtremeCell>& cells,
                                                 const std::vector<ExtremeContestant>& contestants,
                                                 std::ostream& out);
+
+/// The jobs of the study, to be forgotten once the report is written.
+[[nodiscard]] std::vector<tools::Job> extremes_jobs(
+    const ExtremesOptions& options, const std::vector<ExtremeCell>& cells,
+    const std::vector<ExtremeContestant>& contestants);
 
 }  // namespace signorini::bench

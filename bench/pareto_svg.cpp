@@ -27,6 +27,7 @@ constexpr Look kLooks[] = {
     {"ODE", "#009e73", "M-4.5 -4.5H4.5V4.5H-4.5Z"},
     {"DART", "#cc79a7", "M0 -5L5 4H-5Z"},
     {"Siconos", "#b8860b", "M0 5L5 -4H-5Z"},
+    {"Bullet float", "#e69f00", "M0 -5.5L3 0 0 5.5 -3 0Z"},
 };
 
 const Look& look_of(const std::string& library) {
@@ -52,14 +53,14 @@ struct DecadeAxis {
   }
 };
 
-std::string axes_svg(const DecadeAxis& x, const DecadeAxis& y, double top) {
+std::string axes_svg(const DecadeAxis& x, const DecadeAxis& y, bool is_scene) {
   std::string svg;
   for (int e = x.low; e <= x.high; ++e) {
     const double at = x.at(std::pow(10.0, e));
     svg += fmt::format(
         "<path d=\"M{0:.1f} {1:.1f}V{2:.1f}\" stroke=\"#ddd\"/><text x=\"{0:.1f}\" y=\"{3:.1f}\" "
         "text-anchor=\"middle\">1e{4}</text>\n",
-        at, top + kTop, top + kPanelHeight - kBottom, top + kPanelHeight - kBottom + 16.0, e);
+        at, kTop, kPanelHeight - kBottom, kPanelHeight - kBottom + 16.0, e);
   }
   for (int e = y.low; e <= y.high; ++e) {
     const double at = y.at(std::pow(10.0, e));
@@ -69,32 +70,33 @@ std::string axes_svg(const DecadeAxis& x, const DecadeAxis& y, double top) {
         kLeft, at, kPanelWidth - kRight, kLeft - 6.0, at + 4.0, e);
   }
   return svg + fmt::format(
-                   "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">seconds (shifted "
+                   "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{} (shifted "
                    "geometric mean)</text><text transform=\"translate(16 {:.1f}) rotate(-90)\" "
-                   "text-anchor=\"middle\">natural residual</text>\n",
-                   0.5 * (kLeft + kPanelWidth - kRight), top + kPanelHeight - 14.0,
-                   top + 0.5 * kPanelHeight);
+                   "text-anchor=\"middle\">{}</text>\n",
+                   0.5 * (kLeft + kPanelWidth - kRight), kPanelHeight - 14.0,
+                   is_scene ? "seconds a simulated second" : "seconds", 0.5 * kPanelHeight,
+                   is_scene ? "error / wholly wrong" : "natural residual");
 }
 
-std::string panel_svg(std::span<const LevelScore> scores, const ProblemClass& which, double top) {
+std::string panel_svg(std::span<const LevelScore> scores, const ProblemClass& which) {
   std::vector<LevelScore> dots;
   for (const LevelScore& score : scores) {
     const bool solved_all =
         score.problems > 0 && score.refused == 0 && score.solved == score.problems;
     if (score.which == which && solved_all) dots.push_back(score);
   }
-  std::string svg = fmt::format(
-      "<text x=\"{:.1f}\" y=\"{:.1f}\" font-weight=\"bold\">{}, up to {} rows{}</text>\n", kLeft,
-      top + 24.0, which.form, which.rows,
-      dots.empty() ? ": nobody solves all problems at any level" : "");
+  std::string svg =
+      fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" font-weight=\"bold\">{}, up to {} {}{}</text>\n",
+                  kLeft, 24.0, which.form, which.size, which.unit,
+                  dots.empty() ? ": nobody solves all problems at any level" : "");
   if (dots.empty()) return svg;
   const auto by_time = [](const auto& a, const auto& b) { return a.mean_seconds < b.mean_seconds; };
   const auto by_level = [](const auto& a, const auto& b) { return a.level < b.level; };
   const auto [fast, slow] = std::minmax_element(dots.begin(), dots.end(), by_time);
   const auto [fine, coarse] = std::minmax_element(dots.begin(), dots.end(), by_level);
   const DecadeAxis x(fast->mean_seconds, slow->mean_seconds, kLeft, kPanelWidth - kRight);
-  const DecadeAxis y(fine->level, coarse->level, top + kPanelHeight - kBottom, top + kTop);
-  svg += axes_svg(x, y, top);
+  const DecadeAxis y(fine->level, coarse->level, kPanelHeight - kBottom, kTop);
+  svg += axes_svg(x, y, which.is_scene());
 
   const std::vector<LevelScore> front = pareto_front(scores, which);
   std::string line;
@@ -118,9 +120,9 @@ std::string panel_svg(std::span<const LevelScore> scores, const ProblemClass& wh
   return svg;
 }
 
-std::string legend_svg(double top) {
+std::string legend_svg() {
   std::string svg;
-  double y = top;
+  double y = kTop + 10.0;
   for (const Look& look : kLooks) {
     svg += fmt::format(
         "<path d=\"{}\" transform=\"translate({:.1f} {:.1f})\" fill=\"{}\"/><text x=\"{:.1f}\" "
@@ -142,20 +144,21 @@ std::string pareto_svg(std::span<const LevelScore> scores, const std::string& ti
     if (found == largest.end()) {
       largest.push_back(score.which);
     } else {
-      found->rows = std::max(found->rows, score.which.rows);
+      found->size = std::max(found->size, score.which.size);
     }
   }
-  const double height = 40.0 + kPanelHeight * static_cast<double>(largest.size());
+  const auto rows = static_cast<double>((largest.size() + 1) / 2);
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
       "viewBox=\"0 0 {0:.0f} {1:.0f}\" font-family=\"sans-serif\" font-size=\"12\">\n"
       "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n<text x=\"{2:.0f}\" y=\"26\" "
       "font-size=\"16\">{3}</text>\n",
-      kPanelWidth, height, kLeft, title);
-  double top = 40.0;
-  for (const ProblemClass& which : largest) {
-    svg += panel_svg(scores, which, top) + legend_svg(top + kTop + 10.0);
-    top += kPanelHeight;
+      2.0 * kPanelWidth, 40.0 + kPanelHeight * rows, kLeft, title);
+  for (std::size_t i = 0; i < largest.size(); ++i) {
+    svg += fmt::format("<g transform=\"translate({:.0f} {:.0f})\">\n{}{}</g>\n",
+                       kPanelWidth * static_cast<double>(i % 2),
+                       40.0 + kPanelHeight * static_cast<double>(i / 2),
+                       panel_svg(scores, largest[i]), legend_svg());
   }
   return svg + "</svg>\n";
 }

@@ -4,49 +4,13 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <map>
 #include <ostream>
-#include <set>
 #include <span>
 #include <stdexcept>
 
 namespace signorini::bench {
 namespace {
-
-/// A solver as it takes part: itself, or with A_ii (1 + 1e-10).
-struct Contestant {
-  PeerEntry entry;
-  bool is_regularised = false;
-  [[nodiscard]] std::string name() const { return entry.name + (is_regularised ? "+reg" : ""); }
-};
-
-std::vector<Contestant> contestants(const std::vector<PeerEntry>& entries,
-                                    const PeersOptions& options) {
-  std::vector<Contestant> all;
-  for (const PeerEntry& entry : entries) {
-    all.push_back({entry, false});
-    if (options.regularised && entry.may_be_regularised) {
-      all.push_back({entry, true});
-    }
-  }
-  if (options.solvers.empty()) {
-    return all;
-  }
-  std::vector<Contestant> chosen;
-  for (const std::string& name : options.solvers) {
-    const auto is_it = [&](const Contestant& one) { return one.name() == name; };
-    const auto found = std::find_if(all.begin(), all.end(), is_it);
-    if (found == all.end()) {
-      std::string known;
-      for (const Contestant& one : all) {
-        known.append(" ").append(one.name());
-      }
-      throw std::invalid_argument(
-          std::string("solver: none is called ").append(name).append("; known:").append(known));
-    }
-    chosen.push_back(*found);
-  }
-  return chosen;
-}
 
 /// The problem in the forms that the solvers are given.
 struct GivenProblem {
@@ -54,7 +18,7 @@ struct GivenProblem {
   lcp::Problem regularised;  // made when first asked for
   bool has_regularised = false;
 
-  const lcp::Problem& to(const Contestant& contestant) {
+  const lcp::Problem& to(const PeersContestant& contestant) {
     if (!contestant.is_regularised) {
       return judged;
     }
@@ -94,28 +58,51 @@ void set_floor(const lcp::Problem& problem, std::span<PeersRow> rows) {
   }
 }
 
+PeersRow row_of(const PeerProblem& problem, const PeersContestant& contestant,
+                const lcp::Problem& judged) {
+  PeersRow row;
+  row.problem = problem.name;
+  row.form = problem.form;
+  row.family = problem.family;
+  row.column = problem.column;
+  row.n = static_cast<int>(judged.size());
+  row.mass_ratio = problem.mass_ratio;
+  row.at_rest = problem.at_rest;
+  row.solver = contestant.name();
+  row.library = contestant.entry.library;
+  return row;
+}
+
+/// @param is_too_slow the solver has run out of time on a problem of this series
+PeerRun run_one(const PeersContestant& contestant, GivenProblem& given, const PeersOptions& options,
+                bool& is_too_slow) {
+  if (is_too_slow) {
+    return not_asked(Verdict::kTimedOut, "not asked: out of time on a smaller one");
+  }
+  if (contestant.entry.needs_dense && given.judged.size() > options.most_dense) {
+    return not_asked(Verdict::kRefused,
+                     fmt::format("not asked: more than {} rows", options.most_dense));
+  }
+  PeerRun run = run_peer(contestant.entry, given.to(contestant), given.judged, options.settings,
+                         options.limits);
+  is_too_slow = run.verdict == Verdict::kTimedOut;
+  return run;
+}
+
 class Study {
  public:
   Study(const PeersOptions& options, std::size_t problem_count, std::ostream* progress)
       : options_(options), problem_count_(problem_count), progress_(progress) {}
 
-  void run(const PeerProblem& problem, const std::vector<Contestant>& all, PeersResult& result) {
+  void run(const PeerProblem& problem, const std::vector<PeersContestant>& all,
+           PeersResult& result) {
     ++problem_number_;
     GivenProblem given{.judged = problem.make(), .regularised = {}};
-    for (const Contestant& contestant : all) {
-      PeersRow row;
-      row.problem = problem.name;
-      row.form = problem.form;
-      row.family = problem.family;
-      row.column = problem.column;
-      row.n = static_cast<int>(given.judged.size());
-      row.mass_ratio = problem.mass_ratio;
-      row.at_rest = problem.at_rest;
-      row.solver = contestant.name();
-      row.library = contestant.entry.library;
+    for (const PeersContestant& contestant : all) {
+      PeersRow row = row_of(problem, contestant, given.judged);
       show(fmt::format("{} of {}: {} ({} rows): {}", problem_number_, problem_count_, problem.name,
                        row.n, row.solver));
-      row.run = run_one(problem, contestant, given);
+      row.run = run_one(contestant, given, options_, too_slow_[{problem.series, row.solver}]);
       if (row.run.verdict == Verdict::kInterrupted) {
         result.is_interrupted = true;
         return;
@@ -134,28 +121,11 @@ class Study {
   }
 
  private:
-  PeerRun run_one(const PeerProblem& problem, const Contestant& contestant, GivenProblem& given) {
-    const auto key = std::pair(problem.series, contestant.name());
-    if (too_slow_.count(key) != 0) {
-      return not_asked(Verdict::kTimedOut, "not asked: out of time on a smaller one");
-    }
-    if (contestant.entry.needs_dense && given.judged.size() > options_.most_dense) {
-      return not_asked(Verdict::kRefused,
-                       fmt::format("not asked: more than {} rows", options_.most_dense));
-    }
-    PeerRun run = run_peer(contestant.entry, given.to(contestant), given.judged, options_.settings,
-                           options_.limits);
-    if (run.verdict == Verdict::kTimedOut) {
-      too_slow_.insert(key);
-    }
-    return run;
-  }
-
   const PeersOptions& options_;
   std::size_t problem_count_;
   std::size_t problem_number_ = 0;
   std::ostream* progress_;
-  std::set<std::pair<std::string, std::string>> too_slow_;  // series and solver
+  std::map<std::pair<std::string, std::string>, bool> too_slow_;  // series and solver
 };
 
 }  // namespace
@@ -167,10 +137,53 @@ int PeersResult::wrong_of_ours() const {
   }));
 }
 
+std::vector<PeersContestant> peers_contestants(const std::vector<PeerEntry>& entries,
+                                               const PeersOptions& options) {
+  std::vector<PeersContestant> all;
+  for (const PeerEntry& entry : entries) {
+    all.push_back({entry, false});
+    if (options.regularised && entry.may_be_regularised) {
+      all.push_back({entry, true});
+    }
+  }
+  if (options.solvers.empty()) {
+    return all;
+  }
+  std::vector<PeersContestant> chosen;
+  for (const std::string& name : options.solvers) {
+    const auto is_it = [&](const PeersContestant& one) { return one.name() == name; };
+    const auto found = std::find_if(all.begin(), all.end(), is_it);
+    if (found == all.end()) {
+      std::string known;
+      for (const PeersContestant& one : all) {
+        known.append(" ").append(one.name());
+      }
+      throw std::invalid_argument(
+          std::string("solver: none is called ").append(name).append("; known:").append(known));
+    }
+    chosen.push_back(*found);
+  }
+  return chosen;
+}
+
+std::vector<PeersRow> run_peers_series(std::span<const PeerProblem> series,
+                                       const PeersContestant& contestant,
+                                       const PeersOptions& options) {
+  std::vector<PeersRow> rows;
+  bool is_too_slow = false;
+  for (const PeerProblem& problem : series) {
+    GivenProblem given{.judged = problem.make(), .regularised = {}};
+    rows.push_back(row_of(problem, contestant, given.judged));
+    rows.back().run = run_one(contestant, given, options, is_too_slow);
+    rows.back().run.z.resize(0);
+  }
+  return rows;
+}
+
 PeersResult run_peers_study(const std::vector<PeerProblem>& problems,
                             const std::vector<PeerEntry>& entries, const PeersOptions& options,
                             std::ostream* progress) {
-  const std::vector<Contestant> all = contestants(entries, options);
+  const std::vector<PeersContestant> all = peers_contestants(entries, options);
   PeersResult result;
   Study study(options, problems.size(), progress);
   for (const PeerProblem& problem : problems) {

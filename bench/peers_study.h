@@ -5,6 +5,7 @@
 #include "bench/peer_runner.h"
 
 #include <iosfwd>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,23 @@ struct PeersResult {
   /// Runs of our own solvers that ended in kWrong or kCrashed.
   [[nodiscard]] int wrong_of_ours() const;
 };
+
+/// A solver as it takes part: itself, or with A_ii (1 + 1e-10).
+struct PeersContestant {
+  PeerEntry entry;
+  bool is_regularised = false;
+  [[nodiscard]] std::string name() const { return entry.name + (is_regularised ? "+reg" : ""); }
+};
+
+/// Who takes part. @throws std::invalid_argument if options.solvers names an unknown one.
+[[nodiscard]] std::vector<PeersContestant> peers_contestants(const std::vector<PeerEntry>& entries,
+                                                             const PeersOptions& options);
+
+/// One solver on the problems of one series, smaller ones first: once it is out of time it is not
+/// asked for the larger ones, which count as timed out. Without floors.
+[[nodiscard]] std::vector<PeersRow> run_peers_series(std::span<const PeerProblem> series,
+                                                     const PeersContestant& contestant,
+                                                     const PeersOptions& options);
 
 /// Every solver on every problem, each in a child process (peer_runner.h). A solver that ran out of
 /// time on a problem is not asked for the larger ones of its series, which count as timed out.

@@ -29,9 +29,10 @@ struct LibraryColours {
   std::array<const char*, 5> shades;
 };
 
-constexpr std::array<LibraryColours, 5> kColours = {{
+constexpr std::array<LibraryColours, 6> kColours = {{
     {"Signorini", {"#0b4f9e", "#1f83e0", "#0a8a8a", "#5b6fd6", "#3aa7c9"}},
     {"Bullet", {"#c2410c", "#ea7c2b", "#8a4b1f", "#f0a35e", "#b5651d"}},
+    {"Bullet float", {"#b8860b", "#d4a017", "#8b6914", "#e6c35c", "#6b4f0f"}},
     {"ODE", {"#2e7d32", "#66a83a", "#1b5e20", "#8bc34a", "#33691e"}},
     {"DART", {"#7b1fa2", "#b45bd1", "#4a148c", "#ce93d8", "#6a1b9a"}},
     {"Siconos", {"#b71c1c", "#e0526a", "#7f1d3a", "#f06292", "#ad1457"}},

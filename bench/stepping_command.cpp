@@ -1,11 +1,13 @@
 #include "bench/stepping_command.h"
 
 #include "bench/extremes_study.h"
+#include "bench/job_options.h"
 #include "bench/stacks_study.h"
 #include "bench/write_csv.h"
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <fmt/format.h>
 #include <iostream>
 #include <string>
 #include <vector>
@@ -15,6 +17,7 @@ namespace {
 
 constexpr int kClaimsHold = 0;
 constexpr int kWrongClaim = 1;
+constexpr int kInterrupted = 130;
 
 std::vector<Contestant> contestants() {
   std::vector<Contestant> all;
@@ -36,6 +39,7 @@ std::vector<Contestant> contestants() {
 struct SteppingCommand::Options {
   StacksOptions stacks;
   ExtremesOptions extremes;
+  JobOptions jobs;
   std::string out;
 };
 
@@ -62,6 +66,7 @@ SteppingCommand::SteppingCommand(CLI::App& app) : options_(std::make_unique<Opti
   extremes_->add_option("--axis", o.extremes.axis, "Only axes whose names contain this");
   extremes_->add_option("--contestant", o.extremes.contestant,
                         "Only solvers and engines whose names contain this");
+  o.jobs.add_to(*extremes_);
   for (CLI::App* study : {stacks_, extremes_}) {
     study->add_option("--out", o.out,
                       "Folder for " + study->get_name() +
@@ -76,15 +81,31 @@ bool SteppingCommand::is_asked() const {
   return stacks_->parsed() || extremes_->parsed();
 }
 
+int SteppingCommand::run_extremes() const {
+  ExtremesOptions& o = options_->extremes;
+  o.jobs = options_->jobs.list_options(options_->out, fmt::format("extremes {}", o.cap));
+  const std::vector<ExtremeCell> cells = extreme_cells();
+  const std::vector<ExtremeContestant> contestants = extreme_contestants();
+  const ExtremesReport report = run_extremes_study(o, cells, contestants, std::cout);
+  if (!report.is_leader) {
+    return kClaimsHold;
+  }
+  write_csv(options_->out, "extremes", report.to_csv());
+  if (report.is_interrupted) {
+    return kInterrupted;
+  }
+  if (!o.jobs.folder.empty()) {
+    tools::forget_finished_jobs(extremes_jobs(o, cells, contestants), o.jobs.folder);
+  }
+  return report.passed() ? kClaimsHold : kWrongClaim;
+}
+
 int SteppingCommand::run() const {
   if (!options_->out.empty()) {
     std::filesystem::create_directories(options_->out);
   }
   if (extremes_->parsed()) {
-    const ExtremesReport report =
-        run_extremes_study(options_->extremes, extreme_cells(), extreme_contestants(), std::cout);
-    write_csv(options_->out, "extremes", report.to_csv());
-    return report.passed() ? kClaimsHold : kWrongClaim;
+    return run_extremes();
   }
   const StacksReport report =
       run_stacks_study(options_->stacks, stacks_scenes(), contestants(), std::cout);

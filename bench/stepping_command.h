@@ -17,6 +17,8 @@ class SteppingCommand {
 
  private:
   struct Options;
+  [[nodiscard]] int run_extremes() const;
+
   std::unique_ptr<Options> options_;
   CLI::App* stacks_;
   CLI::App* extremes_;

@@ -13,50 +13,39 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The smallest class that holds so many rows: 16, 64, 256 ...
-int class_of(int rows) {
-  int bound = 16;
-  while (bound < rows) bound *= 4;
-  return bound;
-}
-
 /// A solver on a problem, over the dial.
 struct Cell {
+  std::string problem;
   ProblemClass which;
   std::string solver;
   std::string library;
   bool is_refused = true;
-  std::vector<std::pair<double, double>> runs;  ///< natural residual and seconds of each answer
+  std::vector<std::pair<double, double>> runs;  ///< error and seconds of each answer
 
   /// Seconds of the fastest answer that errs at most that; +infinity for none.
   [[nodiscard]] double seconds(double level) const {
     double fastest = kInfinity;
-    for (const auto& [residual, time] : runs) {
-      if (residual <= level) fastest = std::min(fastest, time);
+    for (const auto& [error, time] : runs) {
+      if (error <= level) fastest = std::min(fastest, time);
     }
     return fastest;
   }
 };
 
 /// Problem by problem, solver by solver, in the order in which they appear.
-std::vector<Cell> cells_of(std::span<const DialRuns> dial) {
+std::vector<Cell> cells_of(std::span<const TradeRun> runs) {
   std::vector<Cell> cells;
   std::map<std::pair<std::string, std::string>, std::size_t> place;
-  for (const DialRuns& position : dial) {
-    for (const PeersRow& row : position.result.rows) {
-      const auto [found, is_new] =
-          place.try_emplace({row.problem + "/" + row.form, row.solver}, cells.size());
-      if (is_new) {
-        cells.push_back({{row.form, class_of(row.n)}, row.solver, row.library, true, {}});
-      }
-      Cell& cell = cells[found->second];
-      if (row.run.verdict == Verdict::kRefused) continue;
-      cell.is_refused = false;
-      // A NaN residual (no answer) is at most nothing.
-      if (row.run.seconds >= 0.0) {
-        cell.runs.emplace_back(row.run.certificate.natural_residual, row.run.seconds);
-      }
+  for (const TradeRun& run : runs) {
+    const auto [found, is_new] = place.try_emplace({run.problem, run.solver}, cells.size());
+    if (is_new) {
+      cells.push_back({run.problem, run.which, run.solver, run.library, true, {}});
     }
+    Cell& cell = cells[found->second];
+    if (run.is_refused) continue;
+    cell.is_refused = false;
+    // A NaN error (no answer) is at most nothing.
+    if (run.seconds >= 0.0) cell.runs.emplace_back(run.error, run.seconds);
   }
   return cells;
 }
@@ -89,7 +78,7 @@ std::vector<ProblemClass> classes_of(std::span<const LevelScore> scores) {
     }
   }
   std::stable_sort(classes.begin(), classes.end(), [](const auto& a, const auto& b) {
-    return a.form < b.form || (a.form == b.form && a.rows < b.rows);
+    return a.form < b.form || (a.form == b.form && a.size < b.size);
   });
   return classes;
 }
@@ -117,12 +106,41 @@ const LevelScore* fastest(std::span<const LevelScore> scores, const ProblemClass
   return best;
 }
 
-/// Of a class and level the solver of ours that solves most, then the fastest; null for none.
-const LevelScore* most_solved(std::span<const LevelScore> scores, const ProblemClass& which,
+/// The smallest level at which the solver of this score solves the whole class.
+double finest_level(std::span<const LevelScore> scores, const LevelScore& of) {
+  double finest = of.level;
+  for (const LevelScore& score : scores) {
+    if (score.which == of.which && score.solver == of.solver && solved_all(score)) {
+      finest = std::min(finest, score.level);
+    }
+  }
+  return finest;
+}
+
+/// Of ours that solve everything and take at most kAsFast times the fastest's time, the most
+/// accurate, then the fastest; null for none.
+const LevelScore* recommended(std::span<const LevelScore> scores, const ProblemClass& which,
                               double level) {
+  constexpr double kAsFast = 1.1;
+  const LevelScore* best = fastest(scores, which, level, true);
+  if (best == nullptr) return nullptr;
+  const double most_seconds = kAsFast * best->mean_seconds;
+  for (const LevelScore& score : scores) {
+    if (score.which != which || score.level != level || !solved_all(score)) continue;
+    if (score.library != "Signorini" || score.mean_seconds > most_seconds) continue;
+    if (finest_level(scores, score) < finest_level(scores, *best)) best = &score;
+  }
+  return best;
+}
+
+/// Of a class and level the solver, of ours or of others, that solves most, then the fastest; null
+/// for none.
+const LevelScore* most_solved(std::span<const LevelScore> scores, const ProblemClass& which,
+                              double level, bool ours) {
   const LevelScore* best = nullptr;
   for (const LevelScore& score : scores) {
-    if (score.which != which || score.level != level || score.library != "Signorini") continue;
+    if (score.which != which || score.level != level) continue;
+    if (ours != (score.library == "Signorini")) continue;
     if (best == nullptr || score.solved > best->solved ||
         (score.solved == best->solved && score.mean_seconds < best->mean_seconds)) {
       best = &score;
@@ -131,27 +149,45 @@ const LevelScore* most_solved(std::span<const LevelScore> scores, const ProblemC
   return best;
 }
 
+/// "ODE ode-dantzig", "Bullet SI50".
+std::string full_name(const LevelScore& score) {
+  return score.solver.starts_with(score.library) ? score.solver
+                                                 : score.library + " " + score.solver;
+}
+
+std::string recommendation_without_all(std::span<const LevelScore> scores,
+                                       const ProblemClass& which, double level) {
+  const LevelScore* ours = most_solved(scores, which, level, true);
+  const LevelScore* theirs = most_solved(scores, which, level, false);
+  const auto count = [](const LevelScore& score) {
+    return fmt::format("{} of {}", score.solved, score.problems + score.refused);
+  };
+  std::string text =
+      ours == nullptr || ours->solved == 0
+          ? "nothing of ours"
+          : fmt::format("none of ours solves all; `{}` {}", ours->solver, count(*ours));
+  if (theirs != nullptr && theirs->solved > (ours == nullptr ? 0 : ours->solved)) {
+    text += fmt::format(" ({}: {})", full_name(*theirs), count(*theirs));
+  }
+  return text;
+}
+
 std::string recommendation(std::span<const LevelScore> scores, const ProblemClass& which,
                            double level) {
-  const LevelScore* ours = fastest(scores, which, level, true);
-  if (ours == nullptr) {
-    const LevelScore* most = most_solved(scores, which, level);
-    if (most == nullptr || most->solved == 0) return "nothing of ours";
-    return fmt::format("none solves all; `{}` {} of {}", most->solver, most->solved,
-                       most->problems + most->refused);
-  }
+  const LevelScore* ours = recommended(scores, which, level);
+  if (ours == nullptr) return recommendation_without_all(scores, which, level);
   std::string text = fmt::format("`{}` {}", ours->solver, short_time(ours->mean_seconds));
   const LevelScore* all = fastest(scores, which, level, false);
-  if (all != ours) {
-    text += fmt::format(" ({} {} is faster: {})", all->library, all->solver,
-                        short_time(all->mean_seconds));
+  if (all->library != "Signorini") {
+    text += fmt::format(" ({} is faster: {})", full_name(*all), short_time(all->mean_seconds));
   }
   return text;
 }
 
 std::string recommendation_table(std::span<const LevelScore> scores) {
   const std::vector<double> levels = levels_of(scores);
-  std::string text = "| form | rows up to |";
+  const bool scenes = !scores.empty() && scores.front().which.is_scene();
+  std::string text = scenes ? "| scenes | bodies up to |" : "| problems | rows up to |";
   std::string rule = "|---|---|";
   for (const double level : levels) {
     text += fmt::format(" error {:g} |", level);
@@ -159,7 +195,7 @@ std::string recommendation_table(std::span<const LevelScore> scores) {
   }
   text += "\n" + rule + "\n";
   for (const ProblemClass& which : classes_of(scores)) {
-    text += fmt::format("| {} | {} |", which.form, which.rows);
+    text += fmt::format("| {} | {} |", which.form, which.size);
     for (const double level : levels) {
       text += fmt::format(" {} |", recommendation(scores, which, level));
     }
@@ -171,7 +207,7 @@ std::string recommendation_table(std::span<const LevelScore> scores) {
 std::string fronts_text(std::span<const LevelScore> scores) {
   std::string text;
   for (const ProblemClass& which : classes_of(scores)) {
-    text += fmt::format("- {}, up to {} rows:", which.form, which.rows);
+    text += fmt::format("- {}, up to {} {}:", which.form, which.size, which.unit);
     const std::vector<LevelScore> front = pareto_front(scores, which);
     for (const LevelScore& score : front) {
       text += fmt::format(" {:g} in {} (`{}`){}", score.level, short_time(score.mean_seconds),
@@ -184,11 +220,12 @@ std::string fronts_text(std::span<const LevelScore> scores) {
 
 std::string rates_table(std::span<const LevelScore> scores) {
   std::string text =
-      "| form | rows up to | error | solver | solved | shifted geometric mean |\n"
+      "| what | size up to | error | solver | solved | shifted geometric mean |\n"
       "|---|---|---|---|---|---|\n";
   for (const LevelScore& score : scores) {
-    text += fmt::format("| {} | {} | {:g} | `{}` | {} of {}{} | {} |\n", score.which.form,
-                        score.which.rows, score.level, score.solver, score.solved, score.problems,
+    text += fmt::format("| {} | {} {} | {:g} | `{}` | {} of {}{} | {} |\n", score.which.form,
+                        score.which.size, score.which.unit, score.level, score.solver, score.solved,
+                        score.problems,
                         score.refused > 0 ? fmt::format(", {} refused", score.refused) : "",
                         short_time(score.mean_seconds));
   }
@@ -197,9 +234,31 @@ std::string rates_table(std::span<const LevelScore> scores) {
 
 }  // namespace
 
-std::vector<LevelScore> level_scores(std::span<const DialRuns> dial, std::span<const double> levels,
+int class_size(int count) {
+  int bound = 16;
+  while (bound < count) bound *= 4;
+  return bound;
+}
+
+std::vector<TradeRun> trade_runs(std::span<const DialRuns> dial) {
+  std::vector<TradeRun> runs;
+  for (const DialRuns& position : dial) {
+    for (const PeersRow& row : position.result.rows) {
+      runs.push_back({.problem = row.problem + "/" + row.form,
+                      .which = {row.form, class_size(row.n)},
+                      .solver = row.solver,
+                      .library = row.library,
+                      .is_refused = row.run.verdict == Verdict::kRefused,
+                      .error = row.run.certificate.natural_residual,
+                      .seconds = row.run.seconds});
+    }
+  }
+  return runs;
+}
+
+std::vector<LevelScore> level_scores(std::span<const TradeRun> runs, std::span<const double> levels,
                                      double penalty_seconds) {
-  const std::vector<Cell> cells = cells_of(dial);
+  const std::vector<Cell> cells = cells_of(runs);
   std::vector<LevelScore> scores;
   for (const double level : levels) {
     std::vector<Sum> sums;
@@ -243,13 +302,19 @@ std::vector<LevelScore> pareto_front(std::span<const LevelScore> scores,
   return front;
 }
 
-std::vector<ProfilePanel> level_profiles(std::span<const DialRuns> dial, double level) {
+std::vector<ProfilePanel> level_profiles(std::span<const TradeRun> runs, double level) {
   std::vector<ProfilePanel> panels;
   std::map<std::pair<std::string, std::string>, bool> takes;  // form and solver: any problem at all
-  const std::vector<Cell> cells = cells_of(dial);
+  std::vector<Cell> cells = cells_of(runs);
   for (const Cell& cell : cells) takes[{cell.which.form, cell.solver}] |= !cell.is_refused;
+  std::erase_if(cells, [&](const Cell& cell) { return !takes[{cell.which.form, cell.solver}]; });
+  // Of a partial study the problems on which not everybody has been are left out.
+  std::map<std::string, int> solvers_of_form;
+  std::map<std::string, int> solvers_of_problem;
+  for (const auto& [key, any] : takes) solvers_of_form[key.first] += any ? 1 : 0;
+  for (const Cell& cell : cells) ++solvers_of_problem[cell.problem];
   for (const Cell& cell : cells) {
-    if (!takes[{cell.which.form, cell.solver}]) continue;
+    if (solvers_of_problem[cell.problem] < solvers_of_form[cell.which.form]) continue;
     auto panel = std::find_if(panels.begin(), panels.end(),
                               [&](const ProfilePanel& p) { return p.title == cell.which.form; });
     if (panel == panels.end()) {
@@ -264,7 +329,7 @@ std::vector<ProfilePanel> level_profiles(std::span<const DialRuns> dial, double 
     }
     series->seconds.push_back(cell.seconds(level));
   }
-  for (ProfilePanel& panel : panels) panel.title += fmt::format(", natural residual {:g}", level);
+  for (ProfilePanel& panel : panels) panel.title += fmt::format(", error {:g}", level);
   return panels;
 }
 
@@ -288,27 +353,62 @@ std::string tradeoff_csv(std::span<const DialRuns> dial) {
 
 std::string scores_csv(std::span<const LevelScore> scores) {
   std::string text =
-      "form,rows_up_to,level,solver,library,problems,solved,refused,shifted_geometric_mean_s\n";
+      "what,size_up_to,unit,level,solver,library,problems,solved,refused,shifted_geometric_mean_"
+      "s\n";
   for (const LevelScore& score : scores) {
-    text += fmt::format("{},{},{:g},{},{},{},{},{},{:.6g}\n", score.which.form, score.which.rows,
-                        score.level, score.solver, score.library, score.problems, score.solved,
-                        score.refused, score.mean_seconds);
+    text +=
+        fmt::format("{},{},{},{:g},\"{}\",{},{},{},{},{:.6g}\n", score.which.form, score.which.size,
+                    score.which.unit, score.level, score.solver, score.library, score.problems,
+                    score.solved, score.refused, score.mean_seconds);
   }
   return text;
 }
 
-std::string tradeoff_markdown(std::span<const LevelScore> scores,
+namespace {
+
+std::string chapter(std::span<const LevelScore> scores) {
+  return fmt::format(
+      "{}\n### Pareto fronts\n\nNothing is both more accurate and faster.\n\n{}\n### Success "
+      "rates and mean times\n\n{}\n",
+      recommendation_table(scores), fronts_text(scores), rates_table(scores));
+}
+
+}  // namespace
+
+std::string tradeoff_markdown(std::span<const LevelScore> problems,
+                              std::span<const LevelScore> scenes,
                               const std::vector<std::string>& remarks) {
   std::string text = "# The trade: error against time\n\n";
   for (const std::string& remark : remarks) text += "- " + remark + "\n";
   text += fmt::format(
-      "\nError: the natural residual max|min(z, w)| / (1 + |q|) of the answer, judged on the "
-      "problem's data. Time: the shifted geometric mean over the problems of a class (shift {:g} "
-      "s), of each the fastest dial position whose answer is good enough.\n\n"
-      "## For this error, at this size, use this\n\nThe fastest of ours that solves every problem "
-      "of the class.\n\n{}\n## Pareto fronts\n\nNothing is both more accurate and "
-      "faster.\n\n{}\n## Success rates and mean times\n\n{}",
-      kShiftSeconds, recommendation_table(scores), fronts_text(scores), rates_table(scores));
+      "\nFor this error, at this size, use this: of ours that solve every problem or "
+      "scene of the class the fastest, or what is more accurate and at most a tenth slower; a "
+      "faster peer is named. Times are shifted geometric means over "
+      "the class (shift {:g} s). All that was measured is in tradeoff.csv and scenes.csv, the "
+      "scores in scores.csv.\n",
+      kShiftSeconds);
+  if (!scenes.empty()) {
+    text +=
+        "\n## Scenes\n\nError: that of the scene's file (closed form or conservation law), over "
+        "the size that is wholly wrong; time: of whole steps with collision detection, for one "
+        "simulated second. `step/4`: a quarter of the scene's step.\n\n" +
+        chapter(scenes);
+  }
+  if (!problems.empty()) {
+    text +=
+        "\n## Contact problems\n\nError: the natural residual max|min(z, w)| / (1 + |q|) of the "
+        "answer, judged on the problem's data; time: of the fastest dial position whose answer is "
+        "good enough.\n\n" +
+        chapter(problems);
+  }
+  return text;
+}
+
+std::string recommendations_markdown(std::span<const LevelScore> problems,
+                                     std::span<const LevelScore> scenes) {
+  std::string text;
+  if (!scenes.empty()) text += recommendation_table(scenes);
+  if (!problems.empty()) text += (text.empty() ? "" : "\n") + recommendation_table(problems);
   return text;
 }
 

@@ -3,6 +3,7 @@
 #include "bench/peers_study.h"
 #include "bench/performance_profile.h"
 
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,19 +16,38 @@ struct DialRuns {
   PeersResult result;
 };
 
-/// A problem, by what decides which solver suits it.
+/// A problem or a scene, by what decides which solver suits it.
 struct ProblemClass {
-  std::string form;  ///< "lcp", "pyramid", "box", "cone" ...
-  int rows = 0;      ///< upper bound of the class: a power of four times 16
+  std::string form;           ///< "lcp", "pyramid", "box", "cone" ...; "stands", "slides" ...
+  int size = 0;               ///< upper bound of the class: class_size()
+  std::string unit = "rows";  ///< of the size; "bodies" of scenes
   [[nodiscard]] bool operator==(const ProblemClass&) const = default;
+  [[nodiscard]] bool is_scene() const { return unit == "bodies"; }
 };
 
-/// A solver over the problems of a class at a level of error. What an answer errs is the natural
-/// residual of its certificate, judged by the runner on the caller's data; what was asked for does
-/// not count. Of the dial's positions the fastest whose answer is good enough counts.
+/// The smallest class that holds so many rows or bodies: 16, 64, 256 ...
+[[nodiscard]] int class_size(int count);
+
+/// A solver at a position of its dial, on one problem or scene.
+struct TradeRun {
+  std::string problem;  ///< with its form: unique
+  ProblemClass which;
+  std::string solver;
+  std::string library;
+  bool is_refused = false;
+  double error = std::numeric_limits<double>::quiet_NaN();  ///< NaN: there is no answer
+  double seconds = -1.0;                                    ///< < 0: there is no answer
+};
+
+/// The runs of solvers on problems: their error is the natural residual of the certificate.
+[[nodiscard]] std::vector<TradeRun> trade_runs(std::span<const DialRuns> dial);
+
+/// A solver over the problems of a class at a level of error. What an answer errs is judged by the
+/// runner, of a problem on the caller's data, of a scene by its closed form; what was asked for
+/// does not count. Of the dial's positions the fastest whose answer is good enough counts.
 struct LevelScore {
   ProblemClass which;
-  double level = 1e-8;  ///< natural residual
+  double level = 1e-8;  ///< of the error
   std::string solver;
   std::string library;
   int problems = 0;  ///< of the class that the solver did not refuse
@@ -43,7 +63,7 @@ inline constexpr double kShiftSeconds = 1e-4;
 /// All classes, levels and solvers, in the order in which they first appear; solvers that refused
 /// every problem of a class are left out.
 /// @param penalty_seconds time of a problem that was not solved, > 0
-[[nodiscard]] std::vector<LevelScore> level_scores(std::span<const DialRuns> dial,
+[[nodiscard]] std::vector<LevelScore> level_scores(std::span<const TradeRun> runs,
                                                    std::span<const double> levels,
                                                    double penalty_seconds);
 
@@ -52,8 +72,9 @@ inline constexpr double kShiftSeconds = 1e-4;
 [[nodiscard]] std::vector<LevelScore> pareto_front(std::span<const LevelScore> scores,
                                                    const ProblemClass& which);
 
-/// Performance profiles at a level, one panel a form.
-[[nodiscard]] std::vector<ProfilePanel> level_profiles(std::span<const DialRuns> dial,
+/// Performance profiles at a level, one panel a form, over the problems on which all its solvers
+/// have been.
+[[nodiscard]] std::vector<ProfilePanel> level_profiles(std::span<const TradeRun> runs,
                                                        double level);
 
 /// One line a run and dial position: what was asked, what the answer errs, seconds.
@@ -61,14 +82,20 @@ inline constexpr double kShiftSeconds = 1e-4;
 /// One line a score.
 [[nodiscard]] std::string scores_csv(std::span<const LevelScore> scores);
 
-/// The page: remarks, the recommendation table (for this error, at this size, use this: of the
-/// solvers that solved all problems of the class the fastest, ours and, where a peer is faster, the
-/// peer), the Pareto fronts, success rates with mean times.
-[[nodiscard]] std::string tradeoff_markdown(std::span<const LevelScore> scores,
+/// The page: remarks, and of scenes and of problems (where there are any) the recommendation table
+/// (for this error, at this size, use this: of our solvers that solved all problems of the class
+/// the fastest, or a more accurate one that takes at most a tenth more; where a peer is faster, or
+/// solves more, the peer as well), the Pareto fronts, success rates with
+/// mean times.
+[[nodiscard]] std::string tradeoff_markdown(std::span<const LevelScore> problems,
+                                            std::span<const LevelScore> scenes,
                                             const std::vector<std::string>& remarks);
+/// The recommendation tables alone.
+[[nodiscard]] std::string recommendations_markdown(std::span<const LevelScore> problems,
+                                                   std::span<const LevelScore> scenes);
 
-/// Error against time as an SVG file, one panel a form at its largest class: a dot a solver and
-/// level that solved everything, the Pareto front as a line.
+/// Error against time as an SVG file, two panels a row, one a form at its largest class: a dot a
+/// solver and level that solved everything, the Pareto front as a line.
 [[nodiscard]] std::string pareto_svg(std::span<const LevelScore> scores, const std::string& title);
 
 }  // namespace signorini::bench

@@ -51,7 +51,11 @@ class ByteWriter {
   template <typename T>
   void write(const std::vector<T>& values) {
     write(std::uint64_t{values.size()});
-    for (const T& value : values) write(value);
+    if constexpr (std::is_trivially_copyable_v<T>) {
+      write_raw(values.data(), values.size() * sizeof(T));
+    } else {
+      for (const T& value : values) write(value);
+    }
   }
   template <typename T>
   void write(const std::optional<T>& value) {
@@ -108,7 +112,12 @@ class ByteReader {
   template <typename T>
   void read(std::vector<T>& values) {
     values.resize(count());
-    for (T& value : values) read(value);
+    if constexpr (std::is_trivially_copyable_v<T>) {
+      const std::string_view bytes = next(values.size() * sizeof(T));
+      if (!bytes.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
+    } else {
+      for (T& value : values) read(value);
+    }
   }
   template <typename T>
   void read(std::optional<T>& value) {

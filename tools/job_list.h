@@ -64,8 +64,10 @@ struct JobListResult {
 /// when their results are written. On the first rank alone.
 void forget_finished_jobs(const std::vector<Job>& jobs, const std::filesystem::path& folder);
 
+/// mpirun or srun started this process as one of its ranks: by the environment that they set.
+[[nodiscard]] bool is_under_mpi();
 /// True but on the ranks of an MPI run that have nothing to say: for what is printed before a list
-/// is run. By the environment that mpirun and srun set.
+/// is run.
 [[nodiscard]] bool is_first_rank();
 
 }  // namespace signorini::tools

@@ -7,9 +7,6 @@
 
 namespace signorini::tools {
 
-/// mpirun or srun started this process as one of its ranks: by the environment that they set.
-[[nodiscard]] bool is_under_mpi();
-
 /// All ranks as one crew, each with one worker. The worker is forked before MPI_Init() and knows
 /// nothing of MPI; the rank itself only passes messages on. The first rank leads: to it the others
 /// are hands. Leaving it is MPI_Finalize().

@@ -2,13 +2,12 @@
 #include <signorini/validation/bullet_world.h>
 #include <signorini/validation/scene_contacts.h>
 
-#include <chrono>
+#include "tools/stopwatch.h"
+
 #include <fmt/format.h>
 
 namespace signorini::validation {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 State state_of(const std::vector<BodySample>& sample) {
   State state(sample.size());
@@ -52,10 +51,11 @@ Track run_bullet(const Scene& scene, const BulletProfile& profile, const StopFla
       track.interrupted = true;
       break;
     }
-    const Clock::time_point start = Clock::now();
+    const tools::Stopwatch stopwatch;
     world.step(scene.step);
-    track.wall_seconds += std::chrono::duration<double>(Clock::now() - start).count();
+    track.wall_seconds += stopwatch.seconds();
     ++track.steps;
+    track.solver_seconds = world.solver_seconds();
     if (watch) watch(track.engine, k, steps);
     std::vector<BodySample> sample = world.sample();
     if (!is_finite(sample)) {

@@ -5,6 +5,8 @@
 #include <signorini/validation/scene.h>
 #include <signorini/validation/track.h>
 
+#include "tools/stopwatch.h"
+
 #include <btBulletDynamicsCommon.h>
 #include <memory>
 #include <set>
@@ -12,6 +14,27 @@
 #include <vector>
 
 namespace signorini::validation {
+
+/// Bullet's sequential impulses, which say how long they took.
+class TimedBulletSolver final : public btSequentialImpulseConstraintSolver {
+ public:
+  btScalar solveGroup(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
+                      int manifold_count, btTypedConstraint** constraints, int constraint_count,
+                      const btContactSolverInfo& info, btIDebugDraw* drawer,
+                      btDispatcher* dispatcher) override {
+    const tools::Stopwatch stopwatch;
+    const btScalar residual = btSequentialImpulseConstraintSolver::solveGroup(
+        bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info, drawer,
+        dispatcher);
+    seconds_ += stopwatch.seconds();
+    return residual;
+  }
+  /// Of all calls so far: wall time, or CPU time where that is less.
+  [[nodiscard]] double seconds() const { return seconds_; }
+
+ private:
+  double seconds_ = 0.0;
+};
 
 /// A scene as a Bullet world. Bullet wants a diagonal inertia, so its body frame is our body frame
 /// turned to the principal axes.
@@ -28,6 +51,8 @@ class BulletWorld {
   /// The contact points of the last step, with the impulses that Bullet's solver left on them over
   /// the step [s].
   [[nodiscard]] std::vector<ContactSample> contacts(double step) const;
+  /// Inside the solver of contacts and joints so far, s.
+  [[nodiscard]] double solver_seconds() const { return solver_.seconds(); }
   /// How Bullet's shapes differ from the scene's, one line a kind.
   [[nodiscard]] const std::set<std::string>& remarks() const { return remarks_; }
 
@@ -61,7 +86,7 @@ class BulletWorld {
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_;
   btDbvtBroadphase broadphase_;
-  btSequentialImpulseConstraintSolver solver_;
+  TimedBulletSolver solver_;
   btDiscreteDynamicsWorld world_;
   PairFilter filter_;
   std::vector<BodyParts> parts_;

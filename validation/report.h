@@ -107,6 +107,7 @@ struct Report {
   std::string version;   ///< of signorini
   std::string engines;   ///< versions: Bullet's, libsdformat's
   bool partial = false;  ///< the run was interrupted
+  std::string jobs;      ///< how its scenes shared a machine; empty: one after the other
   std::vector<SceneReport> scenes;
 };
 

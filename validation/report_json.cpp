@@ -177,11 +177,11 @@ Json arguments_json(const RunArguments& arguments) {
 }
 
 std::string dump(const Report& report, const LinesToJson& lines_json) {
-  Json result = {{"schema", "signorini-report"}, {"schema_version", Report::kSchemaVersion},
-                 {"command", report.command},    {"arguments", arguments_json(report.arguments)},
-                 {"version", report.version},    {"engines", report.engines},
-                 {"partial", report.partial},    {"summary", summary_json(report)},
-                 {"scenes", Json::array()}};
+  Json result = {{"schema", "signorini-report"},    {"schema_version", Report::kSchemaVersion},
+                 {"command", report.command},       {"arguments", arguments_json(report.arguments)},
+                 {"version", report.version},       {"engines", report.engines},
+                 {"partial", report.partial},       {"jobs", report.jobs},
+                 {"summary", summary_json(report)}, {"scenes", Json::array()}};
   for (std::size_t i = 0; i < report.scenes.size(); ++i) {
     result["scenes"].push_back(scene_json(report.scenes[i], lines_json));
     result["scenes"].back()["file"] = scene_file_name(report, i);

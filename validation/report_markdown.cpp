@@ -54,6 +54,7 @@ void write_front(const Report& report, std::string_view no_page_because, Out out
   fmt::format_to(out, "- signorini {}\n- beside it: {}\n- command:\n\n{}\n",
                  markdown_escaped(report.version), markdown_escaped(report.engines),
                  markdown_fenced(report.command));
+  if (!report.jobs.empty()) fmt::format_to(out, "{}.\n\n", markdown_escaped(report.jobs));
   if (no_page_because.empty()) {
     fmt::format_to(out, "Plots: report.html. All numbers: report.json.\n\n");
   } else {

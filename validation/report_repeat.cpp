@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::array<std::string_view, 10> kLeftOut = {"signorini_seconds",
+constexpr std::array<std::string_view, 11> kLeftOut = {"signorini_seconds",
                                                        "bullet_seconds",
                                                        "signorini_solver_seconds",
                                                        "bullet_solver_seconds",
@@ -27,6 +27,7 @@ constexpr std::array<std::string_view, 10> kLeftOut = {"signorini_seconds",
                                                        "solver_seconds",
                                                        "losses",
                                                        "command",
+                                                       "jobs",
                                                        "version",
                                                        "engines"};
 

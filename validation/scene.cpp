@@ -2,6 +2,7 @@
 #include <signorini/validation/scene.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <map>
@@ -36,6 +37,11 @@ std::string text_of(const Material& material) {
 }
 
 }  // namespace
+
+std::span<const std::string_view> scene_kinds() {
+  static constexpr std::array<std::string_view, 4> kKinds = {"stands", "slides", "bounces", "free"};
+  return kKinds;
+}
 
 long Scene::step_count() const {
   return std::max(1L, std::lround(duration / step));

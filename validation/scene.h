@@ -5,7 +5,9 @@
 #include <signorini/core/model/joint.h>
 #include <signorini/core/model/material.h>
 
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -31,6 +33,8 @@ struct Scene {
   /// Gazebo's rule for friction and restitution.
   PairingRule rule = PairingRule::kMinimum;
   std::vector<std::string> notices;  ///< what of the file a run ignores
+  /// What happens in it: one of scene_kinds(), or empty: not said.
+  std::string kind;
   /// The name of the check whose error stands for the scene; empty: none does.
   std::string error;
   double error_scale = 1.0;  ///< > 0: an error of this size is a wholly wrong answer; its unit
@@ -40,6 +44,9 @@ struct Scene {
   /// The index of the body with this name. @throws std::out_of_range naming it.
   [[nodiscard]] int body(const std::string& body_name) const;
 };
+
+/// "stands", "slides" (rolling too), "bounces" (impacts of any kind), "free" (no contact).
+[[nodiscard]] std::span<const std::string_view> scene_kinds();
 
 /// Checks the whole scene. @throws InputError naming the scene, the body or collider and the field.
 void validate(const Scene& scene);

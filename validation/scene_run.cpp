@@ -24,7 +24,7 @@ std::string endings_text(const Track& track) {
 void check_every_step(const Track& track, UnsolvedSteps unsolved, SceneReport& report) {
   report.settings.push_back(
       fmt::format("Signorini: {} steps: {}", track.steps, endings_text(track)));
-  const CheckText text{.name = "steps whose contact problem was not solved",
+  const CheckText text{.name = kUnsolvedSteps,
                        .reference = "certificate",
                        .unit = "1",
                        .reason = "every step's LCP must be certified" +
@@ -79,6 +79,7 @@ RunOptions options_of(const RunArguments& arguments) {
 Track run_ours(const Scene& scene, const TimeStepSettings& settings, const RunOptions& options) {
   TimeStepSettings recorded = settings;
   recorded.lcp.recorder = options.recorder;
+  if (options.accuracy) recorded.accuracy = options.accuracy;
   Track track = run_signorini(scene, recorded, options.stop, options.watch);
   if (track.interrupted && !options.keep_stopped) throw RunInterrupted{};
   return track;
@@ -99,6 +100,9 @@ Runs run_engines(const Scene& scene, const RunOptions& options, SceneReport& rep
   if (options.signorini) {
     const TimeStepSettings settings = step_settings(scene);
     append(describe(settings), report.settings);
+    if (options.accuracy) {
+      report.settings.push_back("Signorini: accuracy " + options.accuracy->name());
+    }
     runs.signorini = run_ours(scene, settings, options);
     report.signorini_seconds = runs.signorini->wall_seconds;
     report.signorini_solver_seconds = runs.signorini->solver_seconds;

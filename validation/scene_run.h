@@ -20,6 +20,8 @@ struct RunOptions {
   bool bullet = true;
   std::optional<double> duration;  ///< s; overrides the scene's own
   BulletProfile profile = BulletProfile::neutral();
+  /// Of our runs, by the dial; none: step_settings() as they are.
+  std::optional<Accuracy> accuracy = std::nullopt;
   const StopFlag* stop = nullptr;
   StepWatcher watch = nullptr;  ///< empty: nobody watches
   bool keep_stopped = false;    ///< a run that was stopped is kept, shorter, as it is
@@ -46,6 +48,9 @@ struct Runs {
     if (bullet) f(*bullet);
   }
 };
+
+/// The check that counts them.
+inline constexpr const char* kUnsolvedSteps = "steps whose contact problem was not solved";
 
 /// Are unsolved steps of ours a failure of the scene, or what it is there to show?
 enum class UnsolvedSteps : unsigned char { kFail, kShow };

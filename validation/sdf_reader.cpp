@@ -189,9 +189,20 @@ class SceneBuilder {
     if (const auto e = world.FindElement("signorini:error_scale"); e != nullptr) {
       scene_.error_scale = numbers(*e).x();
     }
+    if (const auto e = world.FindElement("signorini:kind"); e != nullptr) {
+      scene_.kind = kind(squeezed(e->GetValue()->GetAsString()), *e);
+    }
     if (const auto e = world.FindElement("signorini:pairing"); e != nullptr) {
       scene_.rule = pairing_rule(squeezed(e->GetValue()->GetAsString()), *e);
     }
+  }
+
+  std::string kind(const std::string& word, const sdf::Element& where) {
+    const auto kinds = scene_kinds();
+    if (std::find(kinds.begin(), kinds.end(), word) != kinds.end()) return word;
+    throw InputError(survey_.locate(where) +
+                     ": <signorini:kind>: must be stands, slides, bounces or free, got '" + word +
+                     "'");
   }
 
   PairingRule pairing_rule(const std::string& word, const sdf::Element& where) {

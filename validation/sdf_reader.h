@@ -35,7 +35,8 @@ struct ReadOptions {
 ///     in <world>  <signorini:title>, <signorini:description>, <signorini:duration> (s),
 ///                 <signorini:pairing> minimum | multiply | maximum | mean,
 ///                 <signorini:error> (the name of the check whose error stands for the scene),
-///                 <signorini:error_scale> (> 0: an error of this size is wholly wrong)
+///                 <signorini:error_scale> (> 0: an error of this size is wholly wrong),
+///                 <signorini:kind> stands | slides | bounces | free
 ///     in <link>   <signorini:linear_velocity> (of the centre of mass, m/s, world axes),
 ///                 <signorini:angular_velocity> (rad/s, world axes)
 ///

@@ -1,14 +1,13 @@
 #include <signorini/validation/scene_contacts.h>
 #include <signorini/validation/signorini_runner.h>
 
+#include "tools/stopwatch.h"
+
 #include <algorithm>
-#include <chrono>
 #include <fmt/format.h>
 
 namespace signorini::validation {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 std::vector<BodySample> sample_of(const Bodies& bodies, const State& state) {
   std::vector<BodySample> sample(bodies.size());
@@ -93,9 +92,9 @@ Track run_signorini(const Scene& scene, const TimeStepSettings& settings, const 
       track.interrupted = true;
       break;
     }
-    const Clock::time_point start = Clock::now();
+    const tools::Stopwatch stopwatch;
     stepper.step(state, report);
-    track.wall_seconds += std::chrono::duration<double>(Clock::now() - start).count();
+    track.wall_seconds += stopwatch.seconds();
     ++track.steps;
     if (watch) watch(track.engine, k, steps);
     const double time = static_cast<double>(k) * settings.step;

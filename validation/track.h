@@ -50,8 +50,10 @@ struct Track {
   long unsolved_projections = 0;        ///< position projections that were not solved (ours)
   double impulse = 0.0;  ///< sum of the sizes of all contacts' and joints' impulses (ours), N s
   double projection_energy = 0.0;  ///< sum of the potential energy changes by projection (ours), J
-  double wall_seconds = 0.0;       ///< of the steps alone, measuring and recording apart
-  double solver_seconds = -1.0;    ///< inside the LCP solver (ours); -1: not measured
+  /// Of the steps alone, measuring and recording apart: wall time, or CPU time where that is less
+  /// because others had the processor (tools/stopwatch.h).
+  double wall_seconds = 0.0;
+  double solver_seconds = -1.0;      ///< of that inside the solver of contacts; -1: not measured
   std::vector<std::string> remarks;  ///< how what was run differs from the scene
   bool interrupted = false;          ///< the run was stopped before its end
   bool broke_down = false;           ///< the run ended because a number was no longer finite

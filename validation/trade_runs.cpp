@@ -11,16 +11,9 @@ namespace {
 constexpr double kShort = 0.05;  ///< s; shorter runs are repeated
 constexpr int kRepeats = 3;
 
-struct Way {
-  std::string solver;
-  std::string engine;
-  double step;
-  RunOptions options;
-};
-
-std::vector<Way> ways(const Scene& scene, RunOptions options) {
+std::vector<TradeWay> ways(const Scene& scene, RunOptions options) {
   options.studies = false;
-  std::vector<Way> all;
+  std::vector<TradeWay> all;
   for (const double step : {scene.step, scene.step / 4.0}) {
     if (options.signorini) {
       RunOptions ours = options;
@@ -49,11 +42,14 @@ const Check* named(const SceneReport& report, const std::string& name, const std
   return found == report.checks.end() ? nullptr : &*found;
 }
 
-/// One run under a way: the point's time is the shortest so far, its error the named check's.
-void run_once(const Scene& scene, const Way& way, const SceneCheck& check, TradePoint& point,
-              Trade& trade) {
+}  // namespace
+
+RunFacts run_way(const Scene& scene, const TradeWay& way, const SceneCheck& check,
+                 TradePoint& point, Trade& trade) {
+  Scene varied = scene;
+  varied.step = way.step;
   SceneReport report;
-  check(scene, way.options, report);
+  check(varied, way.options, report);
   const bool ours = way.engine == "signorini";
   const double seconds = ours ? report.signorini_seconds : report.bullet_seconds;
   if (point.whole_seconds < 0.0 || seconds < point.whole_seconds) {
@@ -65,9 +61,9 @@ void run_once(const Scene& scene, const Way& way, const SceneCheck& check, Trade
     trade.unit = measured->unit;
     trade.reference = measured->reference;
   }
+  const Check* unsolved = named(report, kUnsolvedSteps, "signorini");
+  return {.unsolved_steps = unsolved == nullptr ? 0.0 : unsolved->value};
 }
-
-}  // namespace
 
 void measure_trade(const Scene& scene, const RunOptions& options, const SceneCheck& check,
                    SceneReport& report) {
@@ -76,16 +72,14 @@ void measure_trade(const Scene& scene, const RunOptions& options, const SceneChe
   trade.error = scene.error;
   trade.scale = scene.error_scale;
   trade.duration = scene.duration;
-  for (const Way& way : ways(scene, options)) {
-    Scene varied = scene;
-    varied.step = way.step;
+  for (const TradeWay& way : ways(scene, options)) {
     TradePoint point{.solver = way.solver,
                      .engine = way.engine,
                      .step = way.step,
                      .error = std::numeric_limits<double>::quiet_NaN()};
     int repeats = 0;
     do {
-      run_once(varied, way, check, point, trade);
+      run_way(scene, way, check, point, trade);
     } while (++repeats < kRepeats && point.whole_seconds < kShort);
     trade.points.push_back(std::move(point));
   }

@@ -4,11 +4,31 @@
 #include <signorini/validation/scene_run.h>
 
 #include <functional>
+#include <string>
 
 namespace signorini::validation {
 
 /// Fills the report of a scene: runs it in the engines of the options and judges it.
 using SceneCheck = std::function<void(const Scene&, const RunOptions&, SceneReport&)>;
+
+/// A way to run a scene.
+struct TradeWay {
+  std::string solver;  ///< as TradePoint::solver
+  std::string engine;  ///< "signorini" or "bullet"
+  double step = 0.0;   ///< s
+  RunOptions options;  ///< of that engine alone, without studies
+};
+
+/// What else there is to say of a run.
+struct RunFacts {
+  double unsolved_steps = 0.0;  ///< of ours: steps whose contact problem was not solved
+};
+
+/// Runs the scene that way once: the point's times become this run's where it took less, its error
+/// that of the check which the scene names; NaN: there was none.
+/// @param trade its unit and reference, taken from the check @throws RunInterrupted
+RunFacts run_way(const Scene& scene, const TradeWay& way, const SceneCheck& check,
+                 TradePoint& point, Trade& trade);
 
 /// Runs the scene once for each way there is (Signorini and Bullet at the scene's step and at a
 /// quarter of it, Bullet in both profiles) and takes the error of the check that the scene names

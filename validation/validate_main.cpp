@@ -5,12 +5,15 @@
 #include <signorini/validation/bullet_runner.h>
 #include <signorini/validation/drop_in.h>
 #include <signorini/validation/input_error.h>
+#include <signorini/validation/report_bytes.h>
 #include <signorini/validation/report_repeat.h>
 #include <signorini/validation/sdf_reader.h>
 
 #ifdef SIGNORINI_HAS_IO
 #include <signorini/lcp/io/dump_recorder.h>
 #endif
+
+#include "tools/job_list.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -48,6 +51,7 @@ struct Arguments {
   std::vector<std::string> scenes;
   RunArguments run;
   std::string out = "signorini-report";
+  int processes = 1;
   bool no_trade = false;
   bool list = false;
   std::string verify;  ///< a report's folder; empty: run scenes
@@ -86,6 +90,12 @@ void declare(CLI::App& app, Arguments& arguments) {
          "run the scenes of a report's folder again, from the files in it, and compare every "
          "number with its report.json")
       ->check(CLI::ExistingDirectory);
+  app.add_option("--jobs", arguments.processes,
+                 "scenes at once, each in a process; started by mpirun or srun, the ranks take "
+                 "their place. Finished scenes are kept in the folder's jobs/ until all are done: "
+                 "a killed run goes on where it was. Times are then of a shared machine")
+      ->check(CLI::Range(1, 4096))
+      ->capture_default_str();
   app.add_flag("--list", arguments.list, "list the built-in scenes and end");
 }
 
@@ -121,7 +131,7 @@ std::vector<Job> load_jobs(const Arguments& arguments) {
     const DropInScene* drop_in = is_file ? nullptr : find_drop_in_scene(name);
     jobs.push_back({.name = name, .builtin = builtin, .drop_in = drop_in});
     if (builtin == nullptr && drop_in == nullptr) {
-      const bool terminal = isatty(STDOUT_FILENO) != 0;
+      const bool terminal = isatty(STDOUT_FILENO) != 0 && signorini::tools::is_first_rank();
       if (terminal) fmt::print("reading {} ...", name);
       std::fflush(stdout);
       jobs.back().scene = read_scene_file(name, options);
@@ -222,14 +232,19 @@ class Progress {
   Clock::time_point shown_;
 };
 
-Report run_jobs(std::vector<Job> jobs, const Arguments& arguments,
-                signorini::lcp::SolveRecorder* recorder) {
-  RunOptions options = run_options(arguments, recorder);
+Report empty_report(const Arguments& arguments) {
   Report report;
   report.version = SIGNORINI_VERSION;
   report.arguments = arguments.run;
   report.engines = fmt::format("Bullet {} (double precision), libsdformat {}", bullet_version(),
                                sdformat_version());
+  return report;
+}
+
+Report run_jobs(std::vector<Job> jobs, const Arguments& arguments,
+                signorini::lcp::SolveRecorder* recorder) {
+  RunOptions options = run_options(arguments, recorder);
+  Report report = empty_report(arguments);
   Progress progress(jobs.size());
   options.watch = [&progress](const std::string& engine, long step, long steps) {
     progress.step(engine, step, steps);
@@ -253,6 +268,67 @@ Report run_jobs(std::vector<Job> jobs, const Arguments& arguments,
     }
   }
   return report;
+}
+
+/// A list of jobs or, with one process, scenes in this one.
+bool is_job_list(const Arguments& arguments) {
+  return arguments.processes > 1 || signorini::tools::is_under_mpi();
+}
+
+/// What of the command line, and of the scenes' files, decides the results.
+std::string settings_text(const Arguments& arguments, const std::vector<Job>& jobs) {
+  const RunArguments& run = arguments.run;
+  std::string text = fmt::format(
+      "validate {} {} {} {} {} {}", run.engine, run.duration.value_or(-1.0), run.bullet_profile,
+      run.skip_unsupported, run.ground ? fmt::format("{}", *run.ground) : "none", run.trade);
+  for (const Job& job : jobs) {
+    text += "\n" + job.name + "\n" + job.scene.text;
+  }
+  return text;
+}
+
+/// The scenes as jobs, whoever runs them; the report of those that are done.
+struct ListedRun {
+  Report report;
+  std::vector<signorini::tools::Job> list;
+  std::filesystem::path folder;  ///< of the finished jobs
+  bool is_leader = true;
+};
+
+ListedRun run_job_list(std::vector<Job> jobs, const Arguments& arguments) {
+  ListedRun run;
+  run.folder = std::filesystem::path(arguments.out) / "jobs";
+  RunOptions options = run_options(arguments, nullptr);
+  options.stop = nullptr;  // jobs are stopped from outside
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    run.list.push_back({fmt::format("{} {}", i + 1, jobs[i].name), [&jobs, &arguments, options, i] {
+                          SceneReport scene = validate(jobs[i], options);
+                          scene.command = command_for(arguments, jobs[i].name);
+                          return scene_report_bytes(scene);
+                        }});
+  }
+  const signorini::tools::JobListResult result = signorini::tools::run_job_list(
+      run.list,
+      {.processes = arguments.processes,
+       .folder = run.folder,
+       .settings = settings_text(arguments, jobs),
+       .shows_progress = signorini::tools::is_first_rank() && isatty(STDERR_FILENO) != 0});
+  run.is_leader = result.is_leader;
+  if (!result.is_leader) return run;
+  const std::string failure = result.first_failure(run.list);
+  if (!failure.empty()) throw std::runtime_error(failure);
+  run.report = empty_report(arguments);
+  run.report.partial = result.is_interrupted;
+  run.report.jobs = result.remark();
+  Progress progress(jobs.size());
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    if (!result.jobs[i].is_done) continue;
+    SceneReport scene = scene_report_from_bytes(result.jobs[i].bytes);
+    progress.finish(i, scene);
+    run.report.scenes.push_back(std::move(scene));
+  }
+  fmt::print("{}\n", run.report.jobs);
+  return run;
 }
 
 /// Runs a report's scenes again from its folder and prints what differs.
@@ -280,6 +356,29 @@ int verify(const std::string& folder) {
   return result.differences.empty() ? kGood : kCheckFailed;
 }
 
+/// Writes the report and says what it came to.
+int finish(Report report, const Arguments& arguments, const std::string& command) {
+  report.command = command;
+  for (const std::string& file : write_report(report, arguments.out)) {
+    if (std::filesystem::path(file).parent_path() != std::filesystem::path(arguments.out)) continue;
+    fmt::print("wrote {}\n", file);
+  }
+  if (report.partial) return kStopped;
+  for (const SceneReport& scene : report.scenes) {
+    if (scene.verdict() == Verdict::kFail) return kCheckFailed;
+  }
+  return kGood;
+}
+
+int run_listed(std::vector<Job> jobs, const Arguments& arguments, const std::string& command) {
+  ListedRun run = run_job_list(std::move(jobs), arguments);
+  if (!run.is_leader) return kGood;
+  const bool is_partial = run.report.partial;
+  const int code = finish(std::move(run.report), arguments, command);
+  if (!is_partial) signorini::tools::forget_finished_jobs(run.list, run.folder);
+  return code;
+}
+
 int run(const Arguments& arguments, const std::string& command) {
   if (arguments.list) {
     list_builtin_scenes();
@@ -287,6 +386,9 @@ int run(const Arguments& arguments, const std::string& command) {
   }
   std::vector<Job> jobs;
   if (arguments.verify.empty()) jobs = load_jobs(arguments);
+  if (arguments.verify.empty() && is_job_list(arguments)) {
+    return run_listed(std::move(jobs), arguments, command);
+  }
   // From here a stop leaves a report; before, it just ends the program.
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
@@ -298,16 +400,7 @@ int run(const Arguments& arguments, const std::string& command) {
 #else
   Report report = run_jobs(std::move(jobs), arguments, nullptr);
 #endif
-  report.command = command;
-  for (const std::string& file : write_report(report, arguments.out)) {
-    if (std::filesystem::path(file).parent_path() != std::filesystem::path(arguments.out)) continue;
-    fmt::print("wrote {}\n", file);
-  }
-  if (report.partial) return kStopped;
-  for (const SceneReport& scene : report.scenes) {
-    if (scene.verdict() == Verdict::kFail) return kCheckFailed;
-  }
-  return kGood;
+  return finish(std::move(report), arguments, command);
 }
 
 }  // namespace

@@ -2,15 +2,17 @@
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <set>
+#include <sstream>
 #include <string>
 #include <sys/wait.h>
 
 namespace {
 
 /// The exit code of signorini-bench; what it prints is dropped.
-int run(const std::string& arguments) {
-  const int status =
-      std::system((std::string(SIGNORINI_BENCH) + " " + arguments + " >/dev/null 2>&1").c_str());
+int run(const std::string& arguments, const std::string& before = "") {
+  const int status = std::system(
+      (before + " " + std::string(SIGNORINI_BENCH) + " " + arguments + " >/dev/null 2>&1").c_str());
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
@@ -54,6 +56,56 @@ TEST_F(BenchProgram, PeersWritesTableProfileAndCsv) {
   EXPECT_EQ(run("peers --time-limit 0"), 64);
   EXPECT_EQ(run("peers --families castle"), 70);
   EXPECT_EQ(run("peers /no/such/folder"), 70);
+}
+
+/// The lines of a .csv without the columns that hold times.
+std::string without_times(const std::filesystem::path& file) {
+  std::ifstream csv(file);
+  std::string text;
+  std::set<int> times;
+  for (std::string line; std::getline(csv, line);) {
+    std::istringstream cells(line);
+    std::string cell;
+    for (int column = 0; std::getline(cells, cell, ','); ++column) {
+      if (cell == "seconds") times.insert(column);
+      if (times.count(column) == 0) text += cell + ",";
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+/// Few problems for few solvers.
+const std::string kSmallTrade =
+    "tradeoff --no-scenes --families tower4,murty --forms lcp --sizes 16 --ratios 1 --dial "
+    "1e-4,1e-8 "
+    "--solvers auto,lemke,pgs ";
+
+TEST_F(BenchProgram, TradeoffWritesItsPagesAndLeavesNoJobs) {
+  EXPECT_EQ(run(kSmallTrade + "--out '" + folder_.string() + "'"), 0);
+  for (const char* file : {"tradeoff.csv", "scores.csv", "tradeoff.md", "recommendations.md",
+                           "pareto.svg", "profiles.svg"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder_ / file)) << file;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "jobs"));
+  EXPECT_EQ(run("tradeoff --jobs 0"), 64);
+}
+
+TEST_F(BenchProgram, TradeoffIsTheSameForAnyNumberOfProcessesAndRanks) {
+  const auto csv = [&](const std::string& name, const std::string& jobs,
+                       const std::string& before) {
+    EXPECT_EQ(run(kSmallTrade + jobs + " --out '" + (folder_ / name).string() + "'", before), 0);
+    return without_times(folder_ / name / "tradeoff.csv");
+  };
+  const std::string serial = csv("serial", "", "");
+  EXPECT_NE(serial.find(",lemke,"), std::string::npos);
+  EXPECT_EQ(csv("processes", "--jobs 3", ""), serial);
+#ifdef SIGNORINI_MPIRUN
+  EXPECT_EQ(csv("ranks", "",
+                "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 " SIGNORINI_MPIRUN
+                " --oversubscribe -n 4"),
+            serial);
+#endif
 }
 
 TEST_F(BenchProgram, BulletSetsWritesItsCsvOrSaysThatThereIsNoBullet) {

@@ -115,6 +115,23 @@ TEST(ExtremesStudy, NoSolverTellsALieAboutTwoCubes) {
   }
 }
 
+TEST(ExtremesStudy, TheMapDoesNotDependOnTheNumberOfProcesses) {
+  std::vector<ExtremeCell> cells = extreme_cells();
+  std::erase_if(cells, [](const ExtremeCell& cell) {
+    return cell.mass_ratio != 1.0 || !cell.axis.starts_with("time step");
+  });
+  ASSERT_FALSE(cells.empty());
+  const auto map = [&](int processes) {
+    std::ostringstream out;
+    ExtremesOptions options{.cap = 60.0, .contestant = "dial"};
+    options.jobs.processes = processes;
+    ExtremesReport report = run_extremes_study(options, cells, extreme_contestants(), out);
+    for (ExtremesRow& row : report.rows) row.seconds = 0.0;
+    return report.to_csv();
+  };
+  EXPECT_EQ(map(1), map(3));
+}
+
 /// Moves by the closed form, but for what it is told to do wrong.
 class FakePlayer final : public ScenePlayer {
  public:

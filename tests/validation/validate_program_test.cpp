@@ -166,6 +166,70 @@ TEST_F(Program, ReportIsMadeAgainFromItsFolderToTheBit) {
   EXPECT_EQ(shell(again).exit_code, 65);
 }
 
+/// A report without what times are.
+std::string without_times(nlohmann::json report) {
+  report.erase("command");
+  report.erase("jobs");
+  for (nlohmann::json& scene : report["scenes"]) {
+    scene.erase("command");
+    for (const char* engine : {"signorini", "bullet"}) {
+      scene.erase(std::string(engine) + "_seconds");
+      scene.erase(std::string(engine) + "_solver_seconds");
+    }
+    if (scene["trade"].is_null()) continue;
+    scene["trade"].erase("losses");
+    for (nlohmann::json& point : scene["trade"]["points"]) {
+      point.erase("whole_seconds");
+      point.erase("solver_seconds");
+    }
+  }
+  return report.dump();
+}
+
+TEST_F(Program, AListOfJobsGivesTheReportThatOneProcessGives) {
+  const std::string scene = write("ball.sdf", kBallOnPlane);
+  const std::string scenes = "--duration 0.2 wedge slope-stick newtons-cradle '" + scene + "'";
+  ASSERT_EQ(run(scenes).exit_code, 0);
+  const std::string serial = without_times(report());
+  EXPECT_EQ(report()["jobs"], "");
+  const Outcome processes = run("--jobs 3 " + scenes);
+  EXPECT_EQ(processes.exit_code, 0) << processes.output;
+  EXPECT_EQ(without_times(report()), serial);
+  EXPECT_NE(report()["jobs"].get<std::string>().find("TIMES ARE OF A SHARED MACHINE"),
+            std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(out() + "/jobs"));
+  EXPECT_TRUE(std::filesystem::exists(out() + "/scenes/04-ball.sdf"));
+#ifdef SIGNORINI_MPIRUN
+  const Outcome ranks =
+      shell("OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 " SIGNORINI_MPIRUN
+            " --oversubscribe -n 4 " SIGNORINI_VALIDATE " --out '" +
+            out() + "' " + scenes);
+  EXPECT_EQ(ranks.exit_code, 0) << ranks.output;
+  EXPECT_EQ(without_times(report()), serial);
+#endif
+}
+
+TEST_F(Program, AnInterruptedListLeavesAPartialReportAndGoesOn) {
+  const std::string quick = write("quick.sdf", kBallOnPlane);
+  const std::string slow = write("slow.sdf", kBallOnPlane);
+  // The first scene takes three steps, the second would run for hours.
+  std::string text = kBallOnPlane;
+  text.replace(text.find("<model"), 0,
+               "<physics type='ode'><max_step_size>1e3</max_step_size></physics>");
+  std::ofstream(quick) << text;
+  const std::string jobs = out() + "/jobs";
+  const Outcome outcome = shell(
+      SIGNORINI_VALIDATE " --jobs 2 --out '" + out() + "' --engine signorini --duration 3e3 '" +
+      quick + "' '" + slow + "' & pid=$!; until ls '" + jobs +
+      "'/*.job >/dev/null 2>&1 || ! kill -0 $pid; do sleep 0.05; done; kill -INT $pid; "
+      "wait $pid");
+  EXPECT_EQ(outcome.exit_code, 130) << outcome.output;
+  EXPECT_TRUE(report()["partial"].get<bool>());
+  ASSERT_EQ(report()["scenes"].size(), 1U);
+  EXPECT_EQ(report()["scenes"][0]["name"], "quick");
+  EXPECT_TRUE(std::filesystem::exists(jobs)) << "to go on from";
+}
+
 TEST_F(Program, ListNamesTheBuiltinScenes) {
   const Outcome outcome = run("--list");
   EXPECT_EQ(outcome.exit_code, 0);

@@ -212,10 +212,11 @@ export class Front {
   }
 
   private footer(): HTMLElement {
-    const { version, engines, command } = this.report;
+    const { version, engines, command, jobs } = this.report;
     return h('footer', {},
       h('p', {}, `Signorini ${version}, beside ${engines}. Made by`),
       h('pre', { class: 'command', tabindex: '0' }, command),
+      jobs ? h('p', {}, `${jobs}.`) : null,
       h('p', { class: 'screen-only' }, 'Keys: ', h('kbd', {}, '/'), ' filter, ', h('kbd', {}, '←'), ' ',
         h('kbd', {}, '→'), ' previous and next scene, ', h('kbd', {}, 'Esc'), ' back here. ',
         h('a', { href: '#/all' }, 'All scenes on one page'),

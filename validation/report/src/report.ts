@@ -90,6 +90,7 @@ export interface Report {
   version: string;
   engines: string;
   partial: boolean;
+  jobs?: string;
   summary: Record<'scenes' | Verdict, number>;
   scenes: Scene[];
 }
