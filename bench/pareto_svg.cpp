@@ -75,7 +75,7 @@ std::string axes_svg(const DecadeAxis& x, const DecadeAxis& y, bool is_scene) {
                    "text-anchor=\"middle\">{}</text>\n",
                    0.5 * (kLeft + kPanelWidth - kRight), kPanelHeight - 14.0,
                    is_scene ? "seconds a simulated second" : "seconds", 0.5 * kPanelHeight,
-                   is_scene ? "error / wholly wrong" : "natural residual");
+                   is_scene ? "worst error / wholly wrong" : "natural residual");
 }
 
 std::string panel_svg(std::span<const LevelScore> scores, const ProblemClass& which) {
@@ -120,10 +120,14 @@ std::string panel_svg(std::span<const LevelScore> scores, const ProblemClass& wh
   return svg;
 }
 
-std::string legend_svg() {
+std::string legend_svg(std::span<const LevelScore> scores) {
   std::string svg;
   double y = kTop + 10.0;
   for (const Look& look : kLooks) {
+    if (std::none_of(scores.begin(), scores.end(),
+                     [&](const LevelScore& score) { return score.library == look.library; })) {
+      continue;
+    }
     svg += fmt::format(
         "<path d=\"{}\" transform=\"translate({:.1f} {:.1f})\" fill=\"{}\"/><text x=\"{:.1f}\" "
         "y=\"{:.1f}\">{}</text>\n",
@@ -137,16 +141,20 @@ std::string legend_svg() {
 }  // namespace
 
 std::string pareto_svg(std::span<const LevelScore> scores, const std::string& title) {
-  std::vector<ProblemClass> largest;  // of each form
+  std::vector<ProblemClass> largest;  // of each form of problems; all of scenes
   for (const LevelScore& score : scores) {
-    auto found = std::find_if(largest.begin(), largest.end(),
-                              [&](const auto& c) { return c.form == score.which.form; });
+    auto found = std::find_if(largest.begin(), largest.end(), [&](const auto& c) {
+      return score.which.is_scene() ? c == score.which : c.form == score.which.form;
+    });
     if (found == largest.end()) {
       largest.push_back(score.which);
     } else {
       found->size = std::max(found->size, score.which.size);
     }
   }
+  std::stable_sort(largest.begin(), largest.end(), [](const auto& a, const auto& b) {
+    return a.form < b.form || (a.form == b.form && a.size < b.size);
+  });
   const auto rows = static_cast<double>((largest.size() + 1) / 2);
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
@@ -158,7 +166,7 @@ std::string pareto_svg(std::span<const LevelScore> scores, const std::string& ti
     svg += fmt::format("<g transform=\"translate({:.0f} {:.0f})\">\n{}{}</g>\n",
                        kPanelWidth * static_cast<double>(i % 2),
                        40.0 + kPanelHeight * static_cast<double>(i / 2),
-                       panel_svg(scores, largest[i]), legend_svg());
+                       panel_svg(scores, largest[i]), legend_svg(scores));
   }
   return svg + "</svg>\n";
 }

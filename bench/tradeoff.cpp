@@ -284,6 +284,34 @@ std::vector<LevelScore> level_scores(std::span<const TradeRun> runs, std::span<c
   return scores;
 }
 
+std::vector<LevelScore> worst_error_scores(std::span<const TradeRun> runs) {
+  std::vector<Sum> sums;
+  for (const TradeRun& run : runs) {
+    auto found = std::find_if(sums.begin(), sums.end(), [&](const Sum& sum) {
+      return sum.score.which == run.which && sum.score.solver == run.solver;
+    });
+    if (found == sums.end()) {
+      sums.push_back({{.which = run.which,
+                       .level = kLeastError,
+                       .solver = run.solver,
+                       .library = run.library}});
+      found = sums.end() - 1;
+    }
+    ++found->score.problems;
+    if (!(run.error < kInfinity) || run.seconds < 0.0) continue;
+    ++found->score.solved;
+    found->score.level = std::max(found->score.level, run.error);
+    found->logs += std::log(run.seconds + kShiftSeconds);
+  }
+  std::vector<LevelScore> scores;
+  for (Sum& sum : sums) {
+    if (!solved_all(sum.score)) continue;
+    sum.score.mean_seconds = std::exp(sum.logs / sum.score.problems) - kShiftSeconds;
+    scores.push_back(std::move(sum.score));
+  }
+  return scores;
+}
+
 std::vector<LevelScore> pareto_front(std::span<const LevelScore> scores,
                                      const ProblemClass& which) {
   std::vector<LevelScore> front;

@@ -67,6 +67,11 @@ inline constexpr double kShiftSeconds = 1e-4;
                                                    std::span<const double> levels,
                                                    double penalty_seconds);
 
+/// One score a solver and class: its level is the worst error of its runs there (at least
+/// kLeastError), and it is left out where a run came to no answer. For pictures.
+[[nodiscard]] std::vector<LevelScore> worst_error_scores(std::span<const TradeRun> runs);
+inline constexpr double kLeastError = 1e-16;
+
 /// The scores that no other of the same class beats in level and mean time: error against time.
 /// Only scores that solved all problems of the class, refused ones included.
 [[nodiscard]] std::vector<LevelScore> pareto_front(std::span<const LevelScore> scores,
@@ -94,7 +99,8 @@ inline constexpr double kShiftSeconds = 1e-4;
 [[nodiscard]] std::string recommendations_markdown(std::span<const LevelScore> problems,
                                                    std::span<const LevelScore> scenes);
 
-/// Error against time as an SVG file, two panels a row, one a form at its largest class: a dot a
+/// Error against time as an SVG file, two panels a row, one a form of problems at its largest class
+/// and one each class of scenes: a dot a
 /// solver and level that solved everything, the Pareto front as a line.
 [[nodiscard]] std::string pareto_svg(std::span<const LevelScore> scores, const std::string& title);
 

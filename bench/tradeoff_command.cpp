@@ -243,11 +243,13 @@ int TradeoffCommand::run() const {
   }
   std::vector<LevelScore> scores = std::move(scene_scores);
   scores.insert(scores.end(), problem_scores.begin(), problem_scores.end());
+  std::vector<LevelScore> dots = worst_error_scores(scene_runs);
+  dots.insert(dots.end(), problem_scores.begin(), problem_scores.end());
   lcp::write_whole_file(folder / "tradeoff.csv", tradeoff_csv(dial));
   lcp::write_whole_file(folder / "scores.csv", scores_csv(scores));
   lcp::write_whole_file(folder / "tradeoff.md", page);
   lcp::write_whole_file(folder / "recommendations.md", tables);
-  lcp::write_whole_file(folder / "pareto.svg", pareto_svg(scores, "Error against time"));
+  lcp::write_whole_file(folder / "pareto.svg", pareto_svg(dots, "Error against time"));
   lcp::write_whole_file(folder / "profiles.svg",
                         performance_profile_svg(panels, "Performance profiles"));
   fmt::print("{}\nwritten: tradeoff.md, recommendations.md, the .csv and .svg in {}\n", page,

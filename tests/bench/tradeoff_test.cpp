@@ -133,6 +133,15 @@ TEST(Tradeoff, OfWhatIsAsFastTheMoreAccurateIsRecommended) {
       << table(1.5);
 }
 
+TEST(Tradeoff, PictureShowsTheWorstErrorOfWhoAnswersEverything) {
+  std::vector<TradeRun> runs = trade_runs(two_positions());
+  std::erase_if(runs, [](const TradeRun& run) { return run.seconds < 0.0 && run.is_refused; });
+  const std::vector<LevelScore> scores = worst_error_scores(runs);
+  ASSERT_EQ(scores.size(), 2U) << "theirs was out of time once";
+  EXPECT_EQ(score(scores, "sweep", 9e-3).problems, 4);
+  EXPECT_EQ(score(scores, "newton", 1e-12).solved, 4);
+}
+
 TEST(Tradeoff, WhoSolvesMoreThanOursIsNamed) {
   std::vector<DialRuns> dial = two_positions();
   dial[0].result.rows[5] = row("b", 64, "theirs", 1e-9, 1e-5);
