@@ -9,8 +9,8 @@
 namespace signorini {
 namespace {
 
-/// Accelerations up to this much of |q|_inf count as zero; solvers are asked for 1e-12.
-constexpr double kStill = 1e-9;
+/// Accelerations up to this many tolerances of |q|_inf count as zero.
+constexpr double kStill = 100.0;
 
 /// The problem over normal rows and the tangents of contacts that do not slide: z of all rows of
 /// the cones = expansion * z.
@@ -18,8 +18,10 @@ class AccelerationProblem {
  public:
   AccelerationProblem(const Bodies& bodies, const State& state, const ContactSet& contacts,
                       const std::vector<bool>& slides,
-                      const std::vector<BodyAcceleration>& accelerations, double T)
+                      const std::vector<BodyAcceleration>& accelerations,
+                      const RestingSettings& settings)
       : contacts_(contacts), slides_(slides) {
+    const double T = settings.stabilization_time;
     const auto count = static_cast<lcp::Index>(contacts.size());
     assemble_cones(bodies, state, contacts, lcp::Vector::Zero(count), cones_);
     velocity_ = cones_.problem.q;
@@ -34,8 +36,8 @@ class AccelerationProblem {
       q[row] = free.normal + (2.0 * velocity_[row] + contacts[i].gap / T) / T;
       if (has_tangents(i)) {
         const TangentFrame& frame = cones_.frames[i];
-        q[row + 1] = frame.t1.dot(free.slip) + 2.0 * velocity_[row + 1] / T;
-        q[row + 2] = frame.t2.dot(free.slip) + 2.0 * velocity_[row + 2] / T;
+        q[row + 1] = frame.t1.dot(free.slip) + velocity_[row + 1] / settings.slip_time;
+        q[row + 2] = frame.t2.dot(free.slip) + velocity_[row + 2] / settings.slip_time;
       }
     }
     check_slips();
@@ -50,12 +52,13 @@ class AccelerationProblem {
   }
   [[nodiscard]] const std::vector<int>& degenerate() const { return degenerate_; }
 
-  void read(const lcp::Result& result, CoulombReport& report) const {
+  /// @param relative accelerations up to this much of |q|_inf count as zero
+  void read(const lcp::Result& result, double relative, CoulombReport& report) const {
     const lcp::Vector z = some_slide_ ? lcp::Vector(expansion_ * result.z) : result.z;
     report.normal_forces = normal_impulses(cones_, z);
     report.forces = contact_impulses(cones_, contacts_, z);
     const auto count = static_cast<lcp::Index>(contacts_.size());
-    const double still = kStill * (count > 0 ? problem().q.cwiseAbs().maxCoeff() : 0.0);
+    const double still = relative * (count > 0 ? problem().q.cwiseAbs().maxCoeff() : 0.0);
     report.b.resize(count);
     report.d_ddot.resize(count);
     for (lcp::Index i = 0; i < count; ++i) {
@@ -191,15 +194,17 @@ void coulomb_forces(const Bodies& bodies, const State& state, const ContactSet& 
   settings.validate();
   const AccelerationProblem accelerations(
       bodies, state, contacts, slides,
-      free_accelerations(bodies, state, loads, driven_acceleration), settings.stabilization_time);
+      free_accelerations(bodies, state, loads, driven_acceleration), settings);
   const lcp::Problem& problem = accelerations.problem();
-  const std::unique_ptr<lcp::Solver> solver = lcp::make_solver(
-      problem.cones.empty() ? settings.solver : settings.friction_solver, settings.lcp);
+  const bool is_lcp = problem.cones.empty();
+  const lcp::SolverSettings& told = is_lcp ? settings.lcp : settings.friction_lcp;
+  const std::unique_ptr<lcp::Solver> solver =
+      lcp::make_solver(is_lcp ? settings.solver : settings.friction_solver, told);
   CoulombReport fresh;
   solver->solve(problem, fresh.result);
   fresh.status = fresh.result.status;
   fresh.degenerate_contacts = accelerations.degenerate();
-  accelerations.read(fresh.result, fresh);
+  accelerations.read(fresh.result, kStill * told.tolerance, fresh);
   report = std::move(fresh);
 }
 

@@ -25,7 +25,7 @@ struct CoulombReport {
   lcp::Vector normal_forces;       ///< f, N
   lcp::Vector b;                   ///< d'' without contact forces, stabilization included, m/s^2
   lcp::Vector d_ddot;              ///< d'' with them
-  std::vector<ContactMode> modes;  ///< where solved; to 1e-9 of the accelerations without forces
+  std::vector<ContactMode> modes;  ///< where solved; to 100 tolerances of the accelerations
   /// Where it slides the unit direction of the slip of A over B, or of the slip that begins; else
   /// zero.
   std::vector<Vec3> directions;
@@ -47,8 +47,8 @@ struct CoulombReport {
 /// redundant the forces are one solution of many.
 /// @param slides one a contact: whether it slides; u_T is that of the state
 /// @param loads, driven_acceleration see free_accelerations()
-/// @param settings stabilization_time acts on d'' and on u' of contacts that do not slide:
-/// u' + 2 u_T/T. Without contacts that may stick the problem is an LCP, for settings.solver; else
+/// @param settings stabilization_time acts on d'', slip_time on u' of contacts that do not slide.
+/// Without contacts that may stick the problem is an LCP, for settings.solver; else
 /// it is for settings.friction_solver
 /// @throws std::invalid_argument for bad bodies, states, contacts, loads or settings, and for
 /// contacts that resist turning; report is then unchanged.

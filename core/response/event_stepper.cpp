@@ -19,8 +19,12 @@ namespace {
 constexpr double kSettled = 1e-11;
 /// A break-up is found to this, s; relative to the segment to some roundings.
 constexpr double kTimeResolution = 1e-12;
-/// RestingSettings::stabilization_time over the length of the segment: drift fades in so many.
+/// RestingSettings::stabilization_time over the length of the segment: drift fades in so many; and
+/// the shortest, s: in less time overlap would take forces that themselves shorten the segments.
 constexpr double kStabilizing = 4.0;
+constexpr double kShortestStabilizing = 0.01;
+/// RestingSettings::slip_time over the length of the segment; friction bounds its forces.
+constexpr double kStopping = 2.0;
 /// Shorter segments are not divided, s.
 constexpr double kShortest = 1e-10;
 
@@ -85,7 +89,9 @@ class EventStepper::Run {
       if (!settle()) {
         return;
       }
-      settings_.resting.stabilization_time = kStabilizing * next_length_;
+      settings_.resting.stabilization_time =
+          std::max(kStabilizing * next_length_, kShortestStabilizing);
+      settings_.resting.slip_time = kStopping * next_length_;
       support_ = support(state_);
       const bool consistent = lcp::is_solved(support_.status);
       if (consistent) {
@@ -183,9 +189,8 @@ class EventStepper::Run {
   }
 
   void forget(const Contact& contact) {
-    std::erase_if(held_, [&](const RestingContact& held) {
-      return signorini::find({held}, contact) != nullptr;
-    });
+    std::erase_if(held_,
+                  [&](const RestingContact& held) { return same_features(held.contact, contact); });
   }
 
   /// Of the contacts found last, in their state.
@@ -411,7 +416,7 @@ class EventStepper::Run {
     find(end);
     for (RestingContact& held : held_) {
       const auto now = std::find_if(contacts_.begin(), contacts_.end(), [&](const Contact& one) {
-        return signorini::find({held}, one) != nullptr;
+        return same_features(held.contact, one);
       });
       held.turned_back = now != contacts_.end() && turns_back(held, *now, end);
     }

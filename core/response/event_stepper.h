@@ -37,8 +37,9 @@ struct EventSettings {
   /// Whatever they say: impact.colliding_threshold is resting_speed, and impact.friction is on
   /// where a touching contact has friction; then the law must be kNewton or kReflections.
   ImpactSettings impact = {};
-  /// resting.stabilization_time is 2 longest_segment, whatever it says: the gaps of resting
-  /// contacts do not drift, and their forces hold the correction, g being off by about d/T^2 M.
+  /// Whatever they say: resting.stabilization_time T is 4 segments, and at least 0.01 s: the gaps
+  /// of resting contacts do not drift, and their forces hold the correction, g being off by about
+  /// d/T^2 M; resting.slip_time is 2 segments.
   RestingSettings resting = {};
   int most_events = 1000000;  ///< of one advance(), >= 1
 

@@ -151,12 +151,14 @@ class SupportFinder {
 
 }  // namespace
 
+bool same_features(const Contact& a, const Contact& b) {
+  return a.body_a == b.body_a && a.body_b == b.body_b && a.feature_id == b.feature_id;
+}
+
 const RestingContact* find(const RestingContacts& contacts, const Contact& contact) {
-  const auto same = [&](const RestingContact& one) {
-    return one.contact.body_a == contact.body_a && one.contact.body_b == contact.body_b &&
-           one.contact.feature_id == contact.feature_id;
-  };
-  const auto found = std::find_if(contacts.begin(), contacts.end(), same);
+  const auto found = std::find_if(contacts.begin(), contacts.end(), [&](const RestingContact& one) {
+    return same_features(one.contact, contact);
+  });
   return found == contacts.end() ? nullptr : &*found;
 }
 

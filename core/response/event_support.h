@@ -20,6 +20,8 @@ struct RestingContact {
 };
 using RestingContacts = std::vector<RestingContact>;
 
+/// The same features of the same bodies, whatever their state.
+[[nodiscard]] bool same_features(const Contact& a, const Contact& b);
 /// The one of the same features, or null.
 [[nodiscard]] const RestingContact* find(const RestingContacts& contacts, const Contact& contact);
 

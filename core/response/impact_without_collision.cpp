@@ -8,7 +8,7 @@
 namespace signorini {
 namespace {
 
-constexpr double kPushed = 1e-9;     // h |b|_inf over the fastest slip
+constexpr double kPushed = 1e-8;     // h |b|_inf over the fastest slip
 constexpr double kVanishing = 1e-3;  // of it; a change of velocity below has not jumped
 
 /// All contacts closed and without slip, as far as they can be.
@@ -31,7 +31,7 @@ ShockReport impact_without_collision(const Bodies& bodies, const ContactSet& con
     cones.problem.q[cones.normal_row[i]] += h * b[i];
   }
   const std::unique_ptr<lcp::Solver> solver =
-      lcp::make_solver(settings.friction_solver, settings.lcp);
+      lcp::make_solver(settings.friction_solver, settings.friction_lcp);
   const lcp::Vector start = sticking_impulses(cones.problem);
   solver->solve(cones.problem, shock.result, &start);
   shock.status = shock.result.status;

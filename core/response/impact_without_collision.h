@@ -27,11 +27,11 @@ struct ShockReport {
 ///
 ///     Coulomb's problem for u+ = A z + u- + h b,   b = d'' without contact forces,  h -> 0,
 ///
-/// which for a single contact end the slip: z = -A^-1 u-. h b here is 1e-9 of the fastest slip; it
+/// which for a single contact end the slip: z = -A^-1 u-. h b here is 1e-8 of the fastest slip; it
 /// tells them from z = 0, which also solves the problem for h = 0, and is not added to the
 /// velocities. A time step of length h does the same.
 /// @param b one a contact, m/s^2
-/// @param settings friction_solver and lcp
+/// @param settings friction_solver and friction_lcp
 /// @param state receives the new momenta where status is solved
 /// @throws std::invalid_argument as assemble_cones()
 [[nodiscard]] ShockReport impact_without_collision(const Bodies& bodies, const ContactSet& contacts,

@@ -75,9 +75,13 @@ void choose_least_norm(const lcp::Problem& problem, const NormalRows& rows, doub
 
 void RestingSettings::validate() const {
   lcp.validate();
-  if (!(stabilization_time > 0.0)) {
-    throw std::invalid_argument("resting settings: stabilization_time: must be > 0, got " +
-                                number_text(stabilization_time) + " s");
+  friction_lcp.validate();
+  for (const auto& [field, value] :
+       {std::pair{"stabilization_time", stabilization_time}, {"slip_time", slip_time}}) {
+    if (!(value > 0.0)) {
+      throw std::invalid_argument("resting settings: " + std::string(field) +
+                                  ": must be > 0, got " + number_text(value) + " s");
+    }
   }
 }
 

@@ -20,10 +20,14 @@ struct RestingSettings {
   /// Of coulomb_forces() where contacts may stick: a name that lcp::make_solver() knows, that takes
   /// cones over a nonsymmetric matrix.
   std::string friction_solver = "auto";
+  lcp::SolverSettings friction_lcp = {.tolerance = 1e-10};  ///< of friction_solver
   /// Against drift of a run: b_i + 2 d_i'/T + d_i/T^2 in the place of b_i, T this time (Baumgarte,
   /// Computer Methods in Applied Mechanics and Engineering 1, 1972, critically damped); infinite:
   /// off. s, > 0.
   double stabilization_time = std::numeric_limits<double>::infinity();
+  /// Of coulomb_forces(): u' + u_T/T in the place of u', T this time, so that what sticks loses the
+  /// slip that rounding and the length of segments left it; infinite: off. s, > 0.
+  double slip_time = std::numeric_limits<double>::infinity();
 
   /// @throws std::invalid_argument naming field, value and bound.
   void validate() const;

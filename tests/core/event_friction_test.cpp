@@ -81,7 +81,7 @@ TEST(EventFriction, ABoxUpASlopeStopsAndStaysOrSlidesBack) {
 TEST(EventFriction, ABoxAtRestOnASlopeDoesNotCreep) {
   World world = sliding_box(0.5, Vec3::Zero());
   EventSettings settings = on_slope(0.49);
-  settings.resting.lcp.tolerance = 1e-14;  // of g; what is left is damped by stabilization
+  settings.resting.friction_lcp.tolerance = 1e-14;  // of g; what is left is damped by stabilization
   const EventReport report = world.run(60.0, settings);
   EXPECT_TRUE(report.events.empty());
   EXPECT_NEAR((world.scene.state[1].x - Vec3(0, 0, 0.1)).norm(), 0.0, 1e-12);
@@ -204,7 +204,7 @@ TEST(EventFriction, AProblemThatIsNotSolvedEndsTheRunWithItsStatus) {
   World world = sliding_box(0.5, Vec3::Zero());
   EventSettings settings = on_slope(0.4);
   settings.resting.friction_solver = "nsgs";
-  settings.resting.lcp.max_iterations = 1;
+  settings.resting.friction_lcp.max_iterations = 1;
   CollisionWorld finder(world.scene.bodies, world.colliders, PairingRule::kMultiply);
   EventStepper stepper(world.scene.bodies, finder, settings);
   EventReport report;
