@@ -1,6 +1,7 @@
 # install + export + build-tree export + pkg-config. A component is a library: find_package(signorini
 # COMPONENTS lcp). Each has an export set of its own, so that asking for one does not ask for the
-# others' dependencies. Files belong to one of three packages: libraries, development, tools.
+# others' dependencies. Files belong to packages: libraries, development, tools, and the libraries for
+# an engine to that engine's, so that the others do not bring the engine in.
 include(CMakePackageConfigHelpers)
 
 set(SIGNORINI_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/signorini)
@@ -8,8 +9,12 @@ set(development COMPONENT development)
 get_property(libraries GLOBAL PROPERTY SIGNORINI_LIBRARIES)
 foreach(target ${libraries})
   string(REPLACE signorini_ "" component ${target})
+  set(package libraries)
+  if(component MATCHES "^(bullet|dart)")
+    set(package ${CMAKE_MATCH_1})
+  endif()
   install(TARGETS ${target} EXPORT signorini-${component}-targets
-    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT libraries NAMELINK_COMPONENT development
+    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${package} NAMELINK_COMPONENT development
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} ${development})
   install(EXPORT signorini-${component}-targets NAMESPACE signorini::
           DESTINATION ${SIGNORINI_CMAKE_DIR} ${development})

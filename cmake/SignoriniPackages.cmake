@@ -1,5 +1,5 @@
-# Debian packages by CPack: libsignorini0, libsignorini-dev, signorini-tools. scripts/package builds
-# them, from a build with -DBUILD_SHARED_LIBS=ON -DCMAKE_INSTALL_PREFIX=/usr.
+# Debian packages by CPack: libsignorini0, libsignorini-bullet0, libsignorini-dart0, libsignorini-dev,
+# signorini-tools. scripts/package builds them, from a build with -DBUILD_SHARED_LIBS=ON -DCMAKE_INSTALL_PREFIX=/usr.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME signorini)
 set(CPACK_PACKAGE_VENDOR "Signorini")
@@ -7,20 +7,38 @@ set(CPACK_PACKAGE_CONTACT "Signorini <signorini@localhost>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_COMPONENTS_ALL libraries development tools)
+set(suggested "libbullet-dev, libdart-dev")
+if(TARGET signorini_bullet OR TARGET signorini_bullet_float)
+  list(APPEND CPACK_COMPONENTS_ALL bullet)
+  string(PREPEND suggested "libsignorini-bullet${PROJECT_VERSION_MAJOR}, ")
+endif()
+if(TARGET signorini_dart)
+  list(APPEND CPACK_COMPONENTS_ALL dart)
+  string(PREPEND suggested "libsignorini-dart${PROJECT_VERSION_MAJOR}, ")
+endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/lcp ${PROJECT_BINARY_DIR}/lcp/io
     ${PROJECT_BINARY_DIR}/core ${PROJECT_BINARY_DIR}/collision ${PROJECT_BINARY_DIR}/c
-    ${PROJECT_BINARY_DIR}/integrations/bullet)
+    ${PROJECT_BINARY_DIR}/integrations/bullet ${PROJECT_BINARY_DIR}/integrations/dart)
 set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS ON)
 
 set(CPACK_DEBIAN_LIBRARIES_PACKAGE_NAME libsignorini${PROJECT_VERSION_MAJOR})
 set(CPACK_DEBIAN_LIBRARIES_PACKAGE_SECTION libs)
 set(CPACK_COMPONENT_LIBRARIES_DESCRIPTION "the shared libraries")
+foreach(engine BULLET DART)
+  string(TOLOWER ${engine} name)
+  set(CPACK_DEBIAN_${engine}_PACKAGE_NAME libsignorini-${name}${PROJECT_VERSION_MAJOR})
+  set(CPACK_DEBIAN_${engine}_PACKAGE_SECTION libs)
+  set(CPACK_COMPONENT_${engine}_DEPENDS libraries)
+endforeach()
+set(CPACK_COMPONENT_BULLET_DESCRIPTION "our solvers inside Bullet")
+set(CPACK_COMPONENT_DART_DESCRIPTION "our solvers inside DART")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libsignorini-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libeigen3-dev (>= 3.4)")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "${suggested}")  # for the components of an engine
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "headers, CMake package and pkg-config files")
 set(CPACK_COMPONENT_DEVELOPMENT_DEPENDS libraries)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME signorini-tools)
