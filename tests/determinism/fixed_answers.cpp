@@ -239,9 +239,9 @@ FixedAnswers contact_answers() {
   std::vector<Contact> contacts;
   for (const ShapeKind a : kShapes) {
     for (const ShapeKind b : kShapes) {
-      for (int k = 0; k < 10; ++k) {
+      for (int k = 0; k < 3; ++k) {
         const auto pair = collision::testing::random_pair(
-            random, a, b, static_cast<collision::testing::Placement>(k % 3));
+            random, a, b, static_cast<collision::testing::Placement>(k));
         collision::find_intersection(pair.a, pair.pose_a, pair.b, pair.pose_b, 0.1 * pair.size,
                                      contacts);
         answers.choices.push_back(std::ssize(contacts));
