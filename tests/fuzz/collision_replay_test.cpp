@@ -1,5 +1,7 @@
-// The fuzzer's target on bytes that every compiler makes: a short run in the tests.
+// The fuzzer's target on bytes that every compiler makes, and on the kept corpus: a short run in
+// the tests.
 #include "collision_bytes.h"
+#include "kept_inputs.h"
 
 #include <gtest/gtest.h>
 #include <random>
@@ -17,6 +19,12 @@ TEST(CollisionBytes, KeepEveryPromise) {
     for (std::uint8_t& byte : bytes) {
       byte = static_cast<std::uint8_t>(plain ? random() : (random() % 4) * 64);
     }
+    judge_bytes(bytes.data(), bytes.size());
+  }
+}
+
+TEST(CollisionBytes, KeptInputsKeepThemToo) {
+  for (const auto& bytes : signorini::testing::kept_inputs("collision")) {
     judge_bytes(bytes.data(), bytes.size());
   }
 }
