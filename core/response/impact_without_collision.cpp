@@ -28,7 +28,7 @@ ShockReport impact_without_collision(const Bodies& bodies, const ContactSet& con
   const double fastest = cones.problem.q.cwiseAbs().maxCoeff();
   const double h = kPushed * fastest / b.cwiseAbs().maxCoeff();
   for (lcp::Index i = 0; i < b.size(); ++i) {
-    cones.problem.q[cones.normal_row[i]] += h * b[i];
+    cones.problem.q[cones.normal_row[i]] = h * b[i];  // they rest: d' = 0
   }
   const std::unique_ptr<lcp::Solver> solver =
       lcp::make_solver(settings.friction_solver, settings.friction_lcp);

@@ -29,7 +29,8 @@ struct ShockReport {
 ///
 /// which for a single contact end the slip: z = -A^-1 u-. h b here is 1e-8 of the fastest slip; it
 /// tells them from z = 0, which also solves the problem for h = 0, and is not added to the
-/// velocities. A time step of length h does the same.
+/// velocities. Of u- the d' are taken as 0, as the forces' problem does, whatever small opening
+/// they were held with. A time step of length h does the same.
 /// @param b one a contact, m/s^2
 /// @param settings friction_solver and friction_lcp
 /// @param state receives the new momenta where status is solved

@@ -208,6 +208,17 @@ TEST(ImpactWithoutCollision, EndsTheSlipOfPainlevesRod) {
   EXPECT_NEAR(kinetic_energy(scene.bodies, scene.state) - before, shock.energy_change, 1e-14);
 }
 
+TEST(ImpactWithoutCollision, TakesWhatRestsAsClosed) {
+  Scene scene = painleve_rod(std::atan(2.0), 1.6, -1.5);
+  scene.state[0].p.z() += 1e-5;  // opens at 1e-5 m/s: held by hysteresis
+  const CoulombReport report = forces_of(scene, Vec3(0, 0, -kG), {true});
+  ASSERT_EQ(report.status, lcp::Status::kInfeasible);
+  const ShockReport shock =
+      impact_without_collision(scene.bodies, scene.contacts, report.b, {}, scene.state);
+  EXPECT_TRUE(lcp::is_solved(shock.status)) << shock.detail;
+  EXPECT_NEAR(slip_velocity(scene.bodies, scene.state, scene.contacts[0]).norm(), 1e-5, 1e-7);
+}
+
 TEST(ImpactWithoutCollision, IsNoneWhereForcesExist) {
   Scene scene = painleve_rod(1.1, 0.5, 1.5);
   const State before = scene.state;
