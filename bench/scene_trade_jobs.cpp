@@ -133,6 +133,7 @@ SceneTradeRow SceneTrade::row(std::size_t job, const tools::JobResult& result) c
 
 std::vector<TradeRun> trade_runs(const std::vector<SceneTradeRow>& rows) {
   std::vector<TradeRun> runs;
+  runs.reserve(rows.size());
   for (const SceneTradeRow& row : rows) {
     runs.push_back({.problem = row.scene,
                     .which = {row.kind, class_size(row.bodies), "bodies"},
