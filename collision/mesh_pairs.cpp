@@ -445,17 +445,28 @@ void find_mesh_contacts(const Convex& a, const Bounds& near, const PlacedMesh& b
                         std::vector<Contact>& contacts) {
   const double within = margin + last_digits(near, b.data);
   const NearestTriangle nearest = add_contacts(a, near, b, within, contacts);
-  if (!contacts.empty() || nearest.distance > within) {
+  if (nearest.distance > within) {
     return;
   }
+  const TriangleCore triangle = core_of(b, nearest.number);
+  const double tolerance = preference_tolerance(a, triangle);
+  const auto is_met = [&] {
+    return std::any_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
+      return contact.gap <= std::max(nearest.distance, 0.0) + tolerance;
+    });
+  };
   // The one that touches beside another triangle's edge leaves the contact to that one, which may
   // be a little further away.
-  const TriangleCore triangle = core_of(b, nearest.number);
-  add_contacts(a, near, b, within + preference_tolerance(a, triangle), contacts);
-  // Where no triangle's normal counts and A is over none, the nearest triangle has the last word.
   if (contacts.empty()) {
+    add_contacts(a, near, b, within + tolerance, contacts);
+  }
+  // Where no triangle's normal counts, and none has A's deep points over it (at a border), the
+  // nearest triangle has the last word.
+  if (!is_met()) {
+    const std::size_t before = contacts.size();
     add_last_word(a, triangle, within, contacts);
-    number_features(b.data, nearest.number, 0, true, contacts);
+    number_features(b.data, nearest.number, before, true, contacts);
+    merge(before, contacts);
   }
 }
 
