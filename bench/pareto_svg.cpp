@@ -155,17 +155,18 @@ std::string pareto_svg(std::span<const LevelScore> scores, const std::string& ti
   std::stable_sort(largest.begin(), largest.end(), [](const auto& a, const auto& b) {
     return a.form < b.form || (a.form == b.form && a.size < b.size);
   });
-  const auto rows = static_cast<double>((largest.size() + 1) / 2);
+  const std::size_t rows = (largest.size() + 1) / 2;
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
       "viewBox=\"0 0 {0:.0f} {1:.0f}\" font-family=\"sans-serif\" font-size=\"12\">\n"
       "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n<text x=\"{2:.0f}\" y=\"26\" "
       "font-size=\"16\">{3}</text>\n",
-      2.0 * kPanelWidth, 40.0 + kPanelHeight * rows, kLeft, title);
+      2.0 * kPanelWidth, 40.0 + kPanelHeight * static_cast<double>(rows), kLeft, title);
   for (std::size_t i = 0; i < largest.size(); ++i) {
+    const std::size_t row = i / 2;
     svg += fmt::format("<g transform=\"translate({:.0f} {:.0f})\">\n{}{}</g>\n",
                        kPanelWidth * static_cast<double>(i % 2),
-                       40.0 + kPanelHeight * static_cast<double>(i / 2),
+                       40.0 + kPanelHeight * static_cast<double>(row),
                        panel_svg(scores, largest[i]), legend_svg(scores));
   }
   return svg + "</svg>\n";

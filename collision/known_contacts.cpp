@@ -1,15 +1,21 @@
 #include <signorini/collision/known_contacts.h>
 
-#include <cstring>
+#include <algorithm>
+#include <bit>
 
 namespace signorini::collision {
 namespace {
 
 /// A zero of the other sign is another pose: its contacts may differ in the signs of zeros.
+template <class Numbers>
+bool is_same(const Numbers& p, const Numbers& q) {
+  return std::equal(p.data(), p.data() + p.size(), q.data(), [](double x, double y) {
+    return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y);
+  });
+}
+
 bool is_same(const Pose& p, const Pose& q) {
-  return std::memcmp(p.position.data(), q.position.data(), 3 * sizeof(double)) == 0 &&
-         std::memcmp(p.orientation.coeffs().data(), q.orientation.coeffs().data(),
-                     4 * sizeof(double)) == 0;
+  return is_same(p.position, q.position) && is_same(p.orientation.coeffs(), q.orientation.coeffs());
 }
 
 }  // namespace

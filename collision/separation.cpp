@@ -395,10 +395,14 @@ void refine_deep(Search& search, double size) {
   }
   std::array<Vec3, 26> directions;
   std::size_t count = 0;
-  for (int k = 0; k < 27; ++k) {
-    const Vec3 direction(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-    if (!direction.isZero()) {
-      directions[count++] = direction.normalized();
+  for (const double x : {-1.0, 0.0, 1.0}) {
+    for (const double y : {-1.0, 0.0, 1.0}) {
+      for (const double z : {-1.0, 0.0, 1.0}) {
+        const Vec3 direction(x, y, z);
+        if (!direction.isZero()) {
+          directions[count++] = direction.normalized();
+        }
+      }
     }
   }
   search.refine_around(directions, kAllAbout);
