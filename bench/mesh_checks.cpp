@@ -17,8 +17,6 @@ using namespace collision;           // NOLINT: the whole file is about them
 using namespace collision::testing;  // NOLINT
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kOfSearch = 1e-8;     // of the smaller size, as pair_checks.cpp says
-constexpr double kPreference = 1e-6;   // the same
 constexpr double kPointRadius = 1e-9;  // a point as a sphere, of the smaller size
 
 ConvexHull prism(const std::array<Vec3, 3>& corners, double thickness) {
@@ -40,7 +38,6 @@ class MeshJudge {
     exact_ = kOfSearch * pair.size + 200.0 * pair.rounding;
     of_reference_ = exact_ + 2.0 * terrain.thickness;
     preference_ = kPreference * pair.size;
-    verdict_.fill(0.0);
   }
 
   JudgedPair run() {
@@ -48,24 +45,12 @@ class MeshJudge {
       judge_distance();
       judge_contacts();
     } catch (const std::invalid_argument&) {
-      fail(PairProperty::kNoNaN);  // every pose of the study is a good one
+      book_.require(PairProperty::kNoNaN, false);  // every pose of the study is a good one
     }
-    return {verdict_, d_};
+    return {book_.verdict(), d_};
   }
 
  private:
-  void off_by(PairProperty property, double metres, double allowed) {
-    double& worst = verdict_[static_cast<std::size_t>(property)];
-    const double off = metres / allowed;
-    worst = std::isnan(off) ? kInfinity : std::max(worst, off);
-  }
-  void fail(PairProperty property) { verdict_[static_cast<std::size_t>(property)] = kInfinity; }
-  void require(PairProperty property, bool holds) {
-    if (!holds) {
-      fail(property);
-    }
-  }
-
   /// The least distance of a shape from a prism; of those further than `at_most` it says nothing.
   [[nodiscard]] double to_prisms(const Shape& shape, const Pose& pose, double at_most) const {
     const double radius = bounding_radius(shape, Pose{});
@@ -82,17 +67,17 @@ class MeshJudge {
   void judge_distance() {
     const auto& [a, pose_a, b, pose_b, size, rounding] = pair_;
     d_ = signed_distance(a, pose_a, b, pose_b);
-    require(PairProperty::kNoNaN, std::isfinite(d_));
+    book_.require(PairProperty::kNoNaN, std::isfinite(d_));
     reference_ = to_prisms(a, pose_a, std::max(d_, 0.0) + of_reference_);
     const bool touch = test_intersection(a, pose_a, b, pose_b);
     if (touch != (d_ <= 0.0)) {
-      off_by(PairProperty::kTest, std::abs(d_), exact_);
+      book_.off_by(PairProperty::kTest, std::abs(d_), exact_);
     }
     if (touch != (reference_ <= 0.0)) {
-      off_by(PairProperty::kTest, std::abs(reference_), of_reference_);
+      book_.off_by(PairProperty::kTest, std::abs(reference_), of_reference_);
     }
     if (reference_ > 0.0 && d_ > 0.0) {
-      off_by(PairProperty::kCertified, std::abs(d_ - reference_), of_reference_);
+      book_.off_by(PairProperty::kCertified, std::abs(d_ - reference_), of_reference_);
     }
     const Pose motion{size * random_direction(random_), random_orientation(random_)};
     PlacedPair near = pair_;
@@ -108,9 +93,9 @@ class MeshJudge {
   /// the sign alone.
   void compare(PairProperty property, double otherwise) {
     const bool is_apart = d_ > exact_ + preference_;
-    off_by(property,
-           is_apart ? std::abs(otherwise - d_) : std::max(otherwise - std::max(d_, 0.0), 0.0),
-           is_apart ? exact_ : exact_ + preference_);
+    book_.off_by(property,
+                 is_apart ? std::abs(otherwise - d_) : std::max(otherwise - std::max(d_, 0.0), 0.0),
+                 is_apart ? exact_ : exact_ + preference_);
   }
 
   void judge_contacts() {
@@ -118,37 +103,41 @@ class MeshJudge {
     find_intersection(pair_.a, pair_.pose_a, pair_.b, pair_.pose_b, margin_, contacts);
     if (contacts.empty()) {
       if (d_ <= margin_) {
-        off_by(PairProperty::kNothingMissed, std::max(margin_ - d_, 2.0 * exact_), exact_);
+        book_.off_by(PairProperty::kNothingMissed, std::max(margin_ - d_, 2.0 * exact_), exact_);
       }
-      off_by(PairProperty::kNothingMissed, std::max(margin_ - reference_, 0.0), of_reference_);
+      book_.off_by(PairProperty::kNothingMissed, std::max(margin_ - reference_, 0.0),
+                   of_reference_);
       return;
     }
-    off_by(PairProperty::kNothingBeyond, std::max(reference_ - margin_, 0.0),
-           of_reference_ + preference_);
+    book_.off_by(PairProperty::kNothingBeyond, std::max(reference_ - margin_, 0.0),
+                 of_reference_ + preference_);
     double least = kInfinity;
     for (const Contact& contact : contacts) {
       least = std::min(least, contact.gap);
       judge_contact(contact);
     }
-    off_by(PairProperty::kCertified, std::abs(least - d_), exact_ + preference_);
+    book_.off_by(PairProperty::kCertified, std::abs(least - d_), exact_ + preference_);
   }
 
   void judge_contact(const Contact& contact) {
-    require(PairProperty::kNoNaN, std::isfinite(contact.gap) && contact.point_a.allFinite() &&
-                                      contact.point_b.allFinite() && contact.normal.allFinite());
-    require(PairProperty::kUnitNormal, std::abs(contact.normal.norm() - 1.0) <= 1e-12);
-    off_by(PairProperty::kNothingBeyond, contact.gap - margin_, exact_ + preference_);
+    book_.require(PairProperty::kNoNaN, std::isfinite(contact.gap) && contact.point_a.allFinite() &&
+                                            contact.point_b.allFinite() &&
+                                            contact.normal.allFinite());
+    book_.require(PairProperty::kUnitNormal, std::abs(contact.normal.norm() - 1.0) <= 1e-12);
+    book_.off_by(PairProperty::kNothingBeyond, contact.gap - margin_, exact_ + preference_);
     const double allowed = of_reference_ + 2.0 * preference_;
-    off_by(PairProperty::kPoints,
-           (contact.point_a - contact.point_b - contact.gap * contact.normal).norm(), allowed);
+    book_.off_by(PairProperty::kPoints,
+                 (contact.point_a - contact.point_b - contact.gap * contact.normal).norm(),
+                 allowed);
     const Pose turned{Vec3::Zero(), pair_.pose_a.orientation};
     for (const Vec3& n : {contact.normal, Vec3(-contact.normal), random_direction(random_)}) {
-      off_by(PairProperty::kPoints,
-             n.dot(contact.point_a - pair_.pose_a.position) - support(pair_.a, turned, n), allowed);
+      book_.off_by(PairProperty::kPoints,
+                   n.dot(contact.point_a - pair_.pose_a.position) - support(pair_.a, turned, n),
+                   allowed);
     }
     const Sphere point{kPointRadius * pair_.size};
     const double beside = to_prisms(point, {contact.point_b, Quat::Identity()}, allowed);
-    off_by(PairProperty::kPoints, std::max(beside, 0.0), allowed);
+    book_.off_by(PairProperty::kPoints, std::max(beside, 0.0), allowed);
   }
 
   const PlacedPair& pair_;
@@ -160,7 +149,7 @@ class MeshJudge {
   double preference_;    ///< m
   double d_ = 0.0;
   double reference_ = 0.0;
-  PairVerdict verdict_;
+  VerdictBook book_;
 };
 
 }  // namespace

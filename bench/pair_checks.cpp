@@ -63,15 +63,6 @@ std::array<Vec3, 42> directions_about(const Vec3& N, Random& random) {
 
 // Of the smaller size. A closed form loses some tens of roundings; 1e-9 is far above them.
 constexpr double kOfClosedForm = 1e-9;
-/// penetration() keeps directions within 1e-8 of the best one (separation.cpp), of which any may be
-/// returned.
-constexpr double kOfSearch = 1e-8;
-/// preference_tolerance(): a face is preferred to a direction along which the shapes are this much
-/// further apart; a corner this far beside a face counts as over it; a face's contact set may begin
-/// this far above the distance. So one of these for a gap; two for a point, which may lie beside
-/// two sides of a face at once (at a right angle the square root of two, at 60 degrees two), and
-/// for shapes that were moved until their two points meet, each of which may lie outside.
-constexpr double kPreference = 1e-6;
 
 class Judge {
  public:
@@ -81,7 +72,6 @@ class Judge {
     const bool closed_form = has_closed_form(pair.a) && has_closed_form(pair.b);
     allowed_ = (closed_form ? kOfClosedForm : kOfSearch) * pair.size + 200.0 * pair.rounding;
     preference_ = boxes || !closed_form ? kPreference * pair.size : 0.0;
-    verdict_.fill(0.0);
   }
 
   JudgedPair run() {
@@ -89,9 +79,9 @@ class Judge {
       judge_distance();
       judge_contacts();
     } catch (const std::invalid_argument&) {
-      fail(PairProperty::kNoNaN);  // every pose of the study is a good one
+      book_.require(PairProperty::kNoNaN, false);  // every pose of the study is a good one
     }
-    return {verdict_, d_};
+    return {book_.verdict(), d_};
   }
 
  private:
@@ -106,22 +96,13 @@ class Judge {
       default: return allowed_ + preference_;
     }
   }
-  void off_by(PairProperty property, double metres) { off_by(property, metres, allowed(property)); }
-  void off_by(PairProperty property, double metres, double allowed) {
-    double& worst = verdict_[static_cast<std::size_t>(property)];
-    const double off = metres / allowed;
-    worst = std::isnan(off) ? kInfinity : std::max(worst, off);
-  }
-  void fail(PairProperty property) { verdict_[static_cast<std::size_t>(property)] = kInfinity; }
-  void require(PairProperty property, bool holds) {
-    if (!holds) {
-      fail(property);
-    }
+  void off_by(PairProperty property, double metres) {
+    book_.off_by(property, metres, allowed(property));
   }
 
   void judge_distance() {
     d_ = distance(pair_);
-    require(PairProperty::kNoNaN, !std::isnan(d_));
+    book_.require(PairProperty::kNoNaN, !std::isnan(d_));
     const bool touch = test_intersection(pair_.a, pair_.pose_a, pair_.b, pair_.pose_b);
     if (touch != (d_ <= 0.0)) {
       off_by(PairProperty::kTest, std::abs(d_));
@@ -162,8 +143,8 @@ class Judge {
     // be the preference from that, either way: above it where the deepest point lies beside the
     // face, below it where a point does.
     const double twice = allowed_ + 2.0 * preference_;
-    off_by(PairProperty::kCertified, std::abs(separation(pair_, N) - least), twice);
-    off_by(PairProperty::kCertified, std::abs(d_ - least), twice);
+    book_.off_by(PairProperty::kCertified, std::abs(separation(pair_, N) - least), twice);
+    book_.off_by(PairProperty::kCertified, std::abs(d_ - least), twice);
     for (const Vec3& n : directions_about(N, random_)) {
       const double s = separation(pair_, n);
       if (std::isfinite(s)) {
@@ -174,9 +155,10 @@ class Judge {
   }
 
   void judge_contact(const Contact& contact) {
-    require(PairProperty::kNoNaN, std::isfinite(contact.gap) && contact.point_a.allFinite() &&
-                                      contact.point_b.allFinite() && contact.normal.allFinite());
-    require(PairProperty::kUnitNormal, std::abs(contact.normal.norm() - 1.0) <= 1e-12);
+    book_.require(PairProperty::kNoNaN, std::isfinite(contact.gap) && contact.point_a.allFinite() &&
+                                            contact.point_b.allFinite() &&
+                                            contact.normal.allFinite());
+    book_.require(PairProperty::kUnitNormal, std::abs(contact.normal.norm() - 1.0) <= 1e-12);
     off_by(PairProperty::kPoints,
            (contact.point_a - contact.point_b - contact.gap * contact.normal).norm());
     const std::array<Vec3, 4> directions{contact.normal, Vec3(-contact.normal),
@@ -192,7 +174,7 @@ class Judge {
   double allowed_;     ///< of a distance, m
   double preference_;  ///< of what a contact set's direction is chosen by, m; 0: not chosen
   double d_ = 0.0;
-  PairVerdict verdict_;
+  VerdictBook book_;
 };
 
 }  // namespace

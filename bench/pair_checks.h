@@ -2,7 +2,10 @@
 
 #include "tests/collision/random_pairs.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <string_view>
 
 namespace signorini::bench {
@@ -26,6 +29,38 @@ inline constexpr int kPairProperties = 11;
 
 /// By property: how far (m) the answer is off, relative to what is allowed; more than 1 is wrong.
 using PairVerdict = std::array<double, kPairProperties>;
+
+/// Of the smaller size: what a distance that is found by a search may be off. penetration() keeps
+/// directions within 1e-8 of the best one (separation.cpp), of which any may be returned.
+inline constexpr double kOfSearch = 1e-8;
+/// Of the smaller size. preference_tolerance(): a face is preferred to a direction along which the
+/// shapes are this much further apart; a corner this far beside a face counts as over it; a face's
+/// contact set may begin this far above the distance. So one of these for a gap; two for a point,
+/// which may lie beside two sides of a face at once (at a right angle the square root of two, at 60
+/// degrees two), and for shapes that were moved until their two points meet, each of which may lie
+/// outside.
+inline constexpr double kPreference = 1e-6;
+
+/// Collects a verdict.
+class VerdictBook {
+ public:
+  /// NaN is wrong by any measure.
+  void off_by(PairProperty property, double metres, double allowed) {
+    double& worst = verdict_[static_cast<std::size_t>(property)];
+    const double off = metres / allowed;
+    worst = std::isnan(off) ? kWrong : std::max(worst, off);
+  }
+  void require(PairProperty property, bool holds) {
+    if (!holds) {
+      verdict_[static_cast<std::size_t>(property)] = kWrong;
+    }
+  }
+  [[nodiscard]] const PairVerdict& verdict() const { return verdict_; }
+
+ private:
+  static constexpr double kWrong = std::numeric_limits<double>::infinity();
+  PairVerdict verdict_{};
+};
 
 struct JudgedPair {
   PairVerdict verdict{};

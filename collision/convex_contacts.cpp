@@ -262,15 +262,17 @@ bool are_parallel(const Convex& a, const Convex& b, const Meeting& meeting) {
 bool find_all_on_face(const Convex& a, const Convex& b, const FacingFace& face, double distance,
                       double margin, std::vector<Contact>& contacts) {
   const std::size_t before = contacts.size();
-  const double tolerance = preference_tolerance(a, b);
-  // Of faces nearly flush all points that are found may lie a little above the margin.
-  for (const double highest : {margin, std::max(margin, distance + tolerance)}) {
-    find_contacts_on_face(a, b, face, highest, contacts);
-    if (least_gap(contacts, before) <= distance + tolerance) {
-      return true;
-    }
+  const double enough = distance + preference_tolerance(a, b);
+  find_contacts_on_face(a, b, face, margin, contacts);
+  if (margin < enough && !(least_gap(contacts, before) <= enough)) {
+    // Of faces nearly flush all points that are found may lie a little above the margin.
     contacts.resize(before);
+    find_contacts_on_face(a, b, face, enough, contacts);
   }
+  if (least_gap(contacts, before) <= enough) {
+    return true;
+  }
+  contacts.resize(before);
   return false;
 }
 

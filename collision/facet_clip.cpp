@@ -121,21 +121,29 @@ void clip_at(const Facet& incident, const Facet& reference, int k, double slack,
   std::swap(polygon, clipped);
 }
 
-/// A point of an edge of the reference polygon that lies beyond its end (by less than the slack
-/// beside the next edge, which is far at an acute corner) goes to that corner.
-void pull_to_corner(const Facet& incident, const Facet& reference, ClipCorner& corner) {
+/// A point of an edge of the reference polygon that lies beyond its end, beside the next edge (by
+/// less than the slack, which is far along the first at an acute corner), goes to that corner. Not
+/// if the next edge goes straight on.
+void pull_to_corner(const Facet& incident, const Facet& reference, double slack,
+                    ClipCorner& corner) {
   const int k = corner.on_reference;
   if (k < 0) {
     return;
   }
   const int count = static_cast<int>(reference.corners.size());
-  for (const int neighbour : {(k + count - 1) % count, (k + 1) % count}) {
-    if (Side(reference, neighbour).excess(corner.point) > 0.0) {
-      corner.corner_of_reference = neighbour == (k + 1) % count ? neighbour : k;
-      corner.point = onto_plane(reference.corners[corner.corner_of_reference].point,
-                                reference.normal, incident);
-      return;
-    }
+  const int next = (k + 1) % count;
+  const Vec3& from = reference.corners[k].point;
+  const Vec3 edge = reference.corners[next].point - from;
+  const double along = edge.dot(corner.point - from);
+  const bool is_before = along < 0.0;
+  if (!is_before && along <= edge.squaredNorm()) {
+    return;
+  }
+  const double straight = 1e-6 * slack;  // above rounding
+  if (Side(reference, is_before ? (k + count - 1) % count : next).excess(corner.point) > straight) {
+    corner.corner_of_reference = is_before ? k : next;
+    corner.point =
+        onto_plane(reference.corners[corner.corner_of_reference].point, reference.normal, incident);
   }
 }
 
@@ -155,7 +163,7 @@ void clip_polygons(const Facet& incident, const Facet& reference, double slack,
     clip_at(incident, reference, k, slack, polygons);
   }
   for (ClipCorner& corner : polygon) {
-    pull_to_corner(incident, reference, corner);
+    pull_to_corner(incident, reference, slack, corner);
     Feature feature = reference.face;
     if (corner.corner_of_reference >= 0) {
       feature = reference.corners[corner.corner_of_reference].feature;

@@ -31,11 +31,14 @@ struct PlacedMesh {
 /// so that no vertex reaches further along N than the feature itself. Inner edges of a flat piece
 /// and concave edges never pass. Where a triangle's own normal does not count, A meets the triangle
 /// along its plane's normal, on the side on which A is least deep, and only where A is over the
-/// triangle. A sphere or capsule whose core comes within 1e-4 of its size of a triangle does too.
+/// triangle. A sphere or capsule whose core comes within 1e-4 of its size of a triangle does too. A
+/// triangle that A is apart from, or only touches, beside it and deep below its plane, has no
+/// contact: the one whose edge or corner that is has it.
 /// Where A's nearest point is above the triangle its plane says all; spheres and capsules meet
 /// edges and vertices by the nearest points of their segments (segments.h). Inner edges and
 /// vertices of flat pieces carry no contacts, and what two triangles of a piece both report is
-/// reported once.
+/// reported once. Where the set that is found does not reach the nearest triangle (A overlaps it
+/// across a border, and its deep points are over none) that one is met along whatever normal.
 ///
 /// The distance is the least over the triangles; overlapping: the least gap of the contact set,
 /// which is the deepest translation along the normals that count (of each triangle alone, not of

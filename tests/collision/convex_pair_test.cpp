@@ -260,6 +260,39 @@ TEST(ConvexPair, DistanceIsTheSameInEveryFrame) {
   }
 }
 
+// A vertex in the middle of a straight edge: a crossing beside it stays where it is.
+TEST(ConvexPair, CrossingsOfAnEdgeInTwoPiecesStayOnTheirPiece) {
+  // The cube |x| <= 1; vertex 8 is in the middle of the edge from 6 to 7, y = z = 1.
+  std::vector<Vec3> vertices;
+  for (int v = 0; v < 8; ++v) {
+    vertices.emplace_back(v & 1 ? 1.0 : -1.0, v & 2 ? 1.0 : -1.0, v & 4 ? 1.0 : -1.0);
+  }
+  vertices.emplace_back(0.0, 1.0, 1.0);
+  const ConvexHull cube = make_hull(vertices, {{0, 2, 3, 1},
+                                               {0, 1, 5, 4},
+                                               {0, 4, 6, 2},
+                                               {1, 3, 7, 5},
+                                               {4, 5, 7, 8, 6},
+                                               {3, 2, 8},
+                                               {2, 6, 8},
+                                               {3, 8, 7}});
+  testing::Random random(6);
+  for (int k = 0; k < 200; ++k) {
+    const double aside = k % 2 == 0 ? 0.6 : -0.6;
+    const Pose frame{testing::random_direction(random), testing::random_orientation(random)};
+    std::vector<Contact> contacts;
+    find_intersection(Box{Vec3::Constant(0.25)},
+                      frame * Pose{Vec3(aside, 1.1, 1.25), Quat::Identity()}, cube, frame, 1e-9,
+                      contacts);
+    ASSERT_EQ(contacts.size(), 4U) << k;
+    for (const Contact& contact : contacts) {
+      const Vec3 point = frame.inverse() * contact.point_b;
+      EXPECT_NEAR(std::abs(point.x() - aside), 0.25, 1e-9) << k;
+      EXPECT_NEAR(std::abs(point.y() - 0.925), 0.075, 1e-9) << k;
+    }
+  }
+}
+
 // Acute corners: points of the clipped face lie on it, not beside it by the slack over a sine.
 TEST(ConvexPair, ClippedPointsAtAcuteCornersLieOnTheirShapes) {
   testing::Random random(2);
