@@ -137,6 +137,10 @@ SceneOutcome run_trade_scene(const TradeScene& trade, const SceneSetting& settin
   SceneOutcome outcome;
   outcome.error = first.error / scene.error_scale;
   outcome.unsolved_steps = facts.unsolved_steps;
+  if (facts.broke_down) {
+    outcome.said = "a number was no longer finite";
+    return outcome;
+  }
   double whole = first.whole_seconds;
   double solver = first.solver_seconds;
   for (int runs = 1; runs < kMostRuns && outcome.error < 1.0 && whole < kShort; ++runs) {

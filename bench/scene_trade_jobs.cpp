@@ -43,6 +43,18 @@ std::string run_float(const TradeScene& trade, const SceneSetting& setting, int 
                                setting.name, divisor));
 }
 
+/// The limit counts the CPU time of the child, which for a program of its own is no measure: a run
+/// of that one that took longer is no answer either.
+std::string within_limit(const std::string& bytes, const TradeScene& trade, double seconds) {
+  SceneOutcome outcome = tools::from_bytes<SceneOutcome>(bytes);
+  if (!(outcome.whole_seconds * trade.scene.duration > seconds)) {
+    return bytes;
+  }
+  outcome = {};
+  outcome.said = "time limit";
+  return tools::to_bytes(outcome);
+}
+
 /// The run in a child under the limit; what kept it from an answer is said in the outcome.
 std::string run_limited(const TradeScene& trade, const SceneSetting& setting, int divisor,
                         double seconds) {
@@ -55,7 +67,10 @@ std::string run_limited(const TradeScene& trade, const SceneSetting& setting, in
       },
       {.seconds = seconds});
   if (answer.end == tools::ChildEnd::kAnswered) {
-    return answer.answer;
+    return setting.library == kFloat ? within_limit(answer.answer, trade, seconds) : answer.answer;
+  }
+  if (answer.end == tools::ChildEnd::kCrashed && setting.library == "Signorini") {
+    throw std::runtime_error(answer.reason);
   }
   SceneOutcome outcome;
   outcome.said = answer.reason;

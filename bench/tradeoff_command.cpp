@@ -214,8 +214,9 @@ int TradeoffCommand::run() const {
   if (scenes) {
     std::vector<SceneTradeRow> rows;
     for (std::size_t i = 0; i + of_problems < jobs.size(); ++i) {
-      if (split[static_cast<std::ptrdiff_t>(i)].is_done) {
-        rows.push_back(scenes->row(i, split[static_cast<std::ptrdiff_t>(i)]));
+      const tools::JobResult& job = split[static_cast<std::ptrdiff_t>(i)];
+      if (job.is_done || !job.reason.empty()) {  // a failed one is a run without an answer
+        rows.push_back(scenes->row(i, job));
       }
     }
     scene_runs = trade_runs(rows);
@@ -230,12 +231,15 @@ int TradeoffCommand::run() const {
   remarks.emplace_back("without scenes: this build has no validation (SIGNORINI_BUILD_VALIDATION)");
 #endif
   const std::string failure = result.first_failure(jobs);
-  if (!failure.empty()) remarks.push_back("INCOMPLETE: a job failed: " + failure);
+  std::string lacks;
+  if (!failure.empty()) lacks = "INCOMPLETE: a job failed: " + failure;
   if (result.is_interrupted) {
-    remarks.emplace_back("PARTIAL: interrupted; the same command goes on where it was");
+    lacks = "PARTIAL: interrupted; the same command goes on where it was";
   }
+  if (!lacks.empty()) remarks.push_back(lacks);
   const std::string page = tradeoff_markdown(problem_scores, scene_scores, remarks);
-  const std::string tables = recommendations_markdown(problem_scores, scene_scores);
+  const std::string tables = (lacks.empty() ? "" : lacks + "\n\n") +
+                             recommendations_markdown(problem_scores, scene_scores);
   std::vector<ProfilePanel> panels;
   for (const double level : {1e-4, 1e-8}) {
     add_profiles(scene_runs, level, panels);
@@ -255,7 +259,7 @@ int TradeoffCommand::run() const {
   fmt::print("{}\nwritten: tradeoff.md, recommendations.md, the .csv and .svg in {}\n", page,
              folder.string());
   if (result.is_interrupted) return kStopped;
-  tools::forget_finished_jobs(jobs, o.jobs.folder(folder));
+  if (failure.empty()) tools::forget_finished_jobs(jobs, o.jobs.folder(folder));
   return wrong == 0 && failure.empty() ? kGood : kWrong;
 }
 

@@ -1,5 +1,6 @@
 #include "tools/job_ranks.h"
 
+#include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
 
@@ -91,6 +92,17 @@ class MpiCrew final : public RankCrew {
     return std::nullopt;
   }
   void serve() override {
+    try {
+      serve_until_home();
+    } catch (const std::exception& error) {
+      // The first rank waits for this one, and MPI_Finalize() for all: nothing else ends them.
+      std::fprintf(stderr, "rank %d: %s\n", rank_, error.what());
+      MPI_Abort(MPI_COMM_WORLD, 1);
+    }
+  }
+
+ private:
+  void serve_until_home() {
     while (true) {
       if (arrived(kJobTag)) {
         int job = kNoMore;
@@ -107,7 +119,6 @@ class MpiCrew final : public RankCrew {
     }
   }
 
- private:
   std::optional<JobReport> glance_at_worker() {
     pollfd end = {worker_.descriptor(), POLLIN, 0};
     if (::poll(&end, 1, kGlanceMilliseconds) <= 0) {

@@ -41,7 +41,7 @@ void check_every_step(const Track& track, UnsolvedSteps unsolved, SceneReport& r
   const auto failed = static_cast<double>(track.unsolved_projections);
   report.checks.push_back(unsolved == UnsolvedSteps::kFail ? at_most(projections, failed, 0.0)
                                                            : shown(projections, failed, 0.0));
-  report.checks.push_back(at_most({.name = "runs that ended with a number that is not finite",
+  report.checks.push_back(at_most({.name = kBrokenRuns,
                                    .reference = "definition",
                                    .unit = "1",
                                    .reason = "no NaN and no infinity"},

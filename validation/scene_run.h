@@ -49,8 +49,10 @@ struct Runs {
   }
 };
 
-/// The check that counts them.
+/// The checks that count them.
 inline constexpr const char* kUnsolvedSteps = "steps whose contact problem was not solved";
+
+inline constexpr const char* kBrokenRuns = "runs that ended with a number that is not finite";
 
 /// Are unsolved steps of ours a failure of the scene, or what it is there to show?
 enum class UnsolvedSteps : unsigned char { kFail, kShow };

@@ -62,7 +62,13 @@ RunFacts run_way(const Scene& scene, const TradeWay& way, const SceneCheck& chec
     trade.reference = measured->reference;
   }
   const Check* unsolved = named(report, kUnsolvedSteps, "signorini");
-  return {.unsolved_steps = unsolved == nullptr ? 0.0 : unsolved->value};
+  const Check* broken = named(report, kBrokenRuns, way.engine);
+  RunFacts facts{.unsolved_steps = unsolved == nullptr ? 0.0 : unsolved->value,
+                 .broke_down = broken != nullptr && broken->value != 0.0};
+  if (facts.broke_down) {  // what came before says nothing of the whole run
+    point.error = std::numeric_limits<double>::quiet_NaN();
+  }
+  return facts;
 }
 
 void measure_trade(const Scene& scene, const RunOptions& options, const SceneCheck& check,

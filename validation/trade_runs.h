@@ -22,6 +22,7 @@ struct TradeWay {
 /// What else there is to say of a run.
 struct RunFacts {
   double unsolved_steps = 0.0;  ///< of ours: steps whose contact problem was not solved
+  bool broke_down = false;      ///< a number was no longer finite: the error is NaN
 };
 
 /// Runs the scene that way once: the point's times become this run's where it took less, its error

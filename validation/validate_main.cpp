@@ -387,6 +387,10 @@ int run(const Arguments& arguments, const std::string& command) {
   std::vector<Job> jobs;
   if (arguments.verify.empty()) jobs = load_jobs(arguments);
   if (arguments.verify.empty() && is_job_list(arguments)) {
+    if (std::getenv("SIGNORINI_DUMP") != nullptr) {
+      throw std::invalid_argument(
+          "SIGNORINI_DUMP: one process must write the problems; start without --jobs and mpirun");
+    }
     return run_listed(std::move(jobs), arguments, command);
   }
   // From here a stop leaves a report; before, it just ends the program.

@@ -53,6 +53,7 @@ void EventSettings::validate() const {
                                 std::to_string(most_events));
   }
   impact.validate(0);
+  resting.validate();
 }
 
 std::string_view to_string(EventKind kind) {
@@ -223,6 +224,7 @@ class EventStepper::Run {
     if (event.speed <= settings_.sticking_speed) {
       return false;
     }
+    const double before = kinetic_energy(bodies_, state_);
     const ShockReport shock = impact_without_collision(bodies_, set, b, settings_.resting, state_);
     if (!lcp::is_solved(shock.status)) {
       report_.detail +=
@@ -232,7 +234,7 @@ class EventStepper::Run {
     }
     report_.status = lcp::Status::kNotRun;
     report_.detail.clear();
-    report_.energy_change_impacts += shock.energy_change;
+    report_.energy_change_impacts += kinetic_energy(bodies_, state_) - before;
     report_.events.push_back(event);
     for (const RestingContact& one : contacts) {
       forget(one.contact);
@@ -468,6 +470,9 @@ class EventStepper::Run {
       if (one.mode != ContactMode::kOpens && open) {
         broken = &one;
         return true;
+      }
+      if (other == nullptr) {
+        continue;  // it was about to open, and did
       }
       changes = changes || turns_back(one, other->contact, then) ||
                 (one.mode == ContactMode::kSticks && other->mode == ContactMode::kSlides);

@@ -54,8 +54,9 @@ enum class EventKind : std::uint8_t {
   kStick,     ///< a contact that slid came to rest and sticks
   kReversal,  ///< a contact that slid came to rest and slides the other way
   kSlip,      ///< a contact that stuck begins to slide
-  /// No finite forces of the resting contacts existed (Painleve's paradox); the impulses jumped
-  /// though nothing approached: impact_without_collision.h.
+  /// No finite forces of the resting contacts were found (Painleve's paradox: Event::forces_status
+  /// says whether that is proved); the impulses jumped though nothing approached:
+  /// impact_without_collision.h.
   kImpactWithoutCollision,
 };
 [[nodiscard]] std::string_view to_string(EventKind kind);

@@ -4,6 +4,8 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 
 namespace signorini {
 namespace {
@@ -22,13 +24,26 @@ lcp::Vector sticking_impulses(const lcp::Problem& problem) {
 ShockReport impact_without_collision(const Bodies& bodies, const ContactSet& contacts,
                                      const lcp::VectorRef& b, const RestingSettings& settings,
                                      State& state) {
+  if (b.size() != static_cast<lcp::Index>(contacts.size()) || !b.allFinite()) {
+    throw std::invalid_argument("impact without collision: b: must be finite and one a contact, " +
+                                std::to_string(contacts.size()) + ", got " +
+                                std::to_string(b.size()));
+  }
   ShockReport shock;
   ConeProblem cones;
   assemble_cones(bodies, state, contacts, lcp::Vector::Zero(b.size()), cones);
-  const double fastest = cones.problem.q.cwiseAbs().maxCoeff();
+  for (lcp::Index i = 0; i < b.size(); ++i) {
+    cones.problem.q[cones.normal_row[i]] = 0.0;  // they rest: d' = 0
+  }
+  const double fastest = cones.problem.q.size() == 0 ? 0.0 : cones.problem.q.cwiseAbs().maxCoeff();
+  if (fastest == 0.0 || b.isZero(0.0)) {
+    shock.status = lcp::Status::kStalled;
+    shock.detail = "nothing slips, or nothing pushes the contacts: no impact";
+    return shock;
+  }
   const double h = kPushed * fastest / b.cwiseAbs().maxCoeff();
   for (lcp::Index i = 0; i < b.size(); ++i) {
-    cones.problem.q[cones.normal_row[i]] = h * b[i];  // they rest: d' = 0
+    cones.problem.q[cones.normal_row[i]] = h * b[i];
   }
   const std::unique_ptr<lcp::Solver> solver =
       lcp::make_solver(settings.friction_solver, settings.friction_lcp);
@@ -49,7 +64,7 @@ ShockReport impact_without_collision(const Bodies& bodies, const ContactSet& con
   apply_contact_impulses(bodies, contacts, shock.contact_impulses, after);
   shock.energy_change = kinetic_energy(bodies, after) - kinetic_energy(bodies, state) -
                         driver_work(bodies, state, contacts, shock.contact_impulses);
-  if (shock.energy_change > 0.0) {
+  if (!(shock.energy_change <= 0.0)) {
     shock.status = lcp::Status::kNumericalBreakdown;
     shock.detail = "the impulses would gain energy";
     return shock;

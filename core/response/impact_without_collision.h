@@ -34,7 +34,8 @@ struct ShockReport {
 /// @param b one a contact, m/s^2
 /// @param settings friction_solver and friction_lcp
 /// @param state receives the new momenta where status is solved
-/// @throws std::invalid_argument as assemble_cones()
+/// @throws std::invalid_argument as assemble_cones(), and for b that is not finite or not one a
+/// contact
 [[nodiscard]] ShockReport impact_without_collision(const Bodies& bodies, const ContactSet& contacts,
                                                    const lcp::VectorRef& b,
                                                    const RestingSettings& settings, State& state);

@@ -173,6 +173,22 @@ TEST(EventFriction, PainlevesRodJamsInAnImpactWithoutCollision) {
   EXPECT_EQ(count(report, EventKind::kImpactWithoutCollision), 1);
 }
 
+// On a belt the jam gives the rod energy; the report tells the bodies' energy, the belt's work
+// included.
+TEST(EventFriction, PainlevesRodOnABeltIsGivenEnergy) {
+  Vec3 lever;
+  World world = leaning_rod(0.5 * std::numbers::pi - std::atan(2.0), 1.8,
+                            {Vec3(-0.5, 0, 0), Vec3::Zero()}, lever);
+  world.scene.bodies[0].kind = BodyKind::kKinematic;
+  set_velocity(world.scene.bodies[0], {Vec3(1.5, 0, 0), Vec3::Zero()}, world.scene.state[0]);
+  const double before = kinetic_energy(world.scene.bodies, world.scene.state);
+  const EventReport report = world.run(1e-9);
+  ASSERT_EQ(count(report, EventKind::kImpactWithoutCollision), 1);
+  EXPECT_GT(report.energy_change_impacts, 0.1);
+  EXPECT_NEAR(kinetic_energy(world.scene.bodies, world.scene.state),
+              before + report.energy_change_impacts, 1e-6);
+}
+
 TEST(EventFriction, PainlevesRodWithLessFrictionOnlySlides) {
   Vec3 lever;
   World world = leaning_rod(0.5 * std::numbers::pi - std::atan(2.0), 1.2,

@@ -200,6 +200,7 @@ TEST(EventStepper, BadInputIsNamed) {
            [](EventSettings& s) { s.longest_segment = 0.0; },
            [](EventSettings& s) { s.sticking_speed = 0.0; },
            [](EventSettings& s) { s.most_events = 0; },
+           [](EventSettings& s) { s.resting.friction_lcp.tolerance = std::nan(""); },
            [](EventSettings& s) { s.gravity.x() = std::nan(""); }}) {
     EventSettings bad;
     spoil(bad);

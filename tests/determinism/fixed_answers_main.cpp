@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -88,7 +89,8 @@ Difference difference(const std::vector<double>& these, const std::vector<double
     if (std::bit_cast<std::uint64_t>(these[k]) != std::bit_cast<std::uint64_t>(those[k])) {
       ++found.numbers;
       const double gap = std::abs(these[k] - those[k]);
-      found.largest = gap <= found.largest ? found.largest : gap;  // NaN stays
+      found.largest =
+          std::isnan(gap) ? std::numeric_limits<double>::infinity() : std::max(found.largest, gap);
     }
     largest_number = std::max(largest_number, std::abs(those[k]));
   }
