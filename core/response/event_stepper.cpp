@@ -140,6 +140,7 @@ class EventStepper::Run {
     settings_.impact.friction =
         std::any_of(contacts_.begin(), contacts_.end(),
                     [](const Contact& contact) { return contact.material.friction > 0.0; });
+    const State before = state_;
     resolve_impact(bodies_, contacts_, settings_.impact, state_, impact);
     if (!lcp::is_solved(impact.status)) {
       report_.status = impact.status;
@@ -147,7 +148,34 @@ class EventStepper::Run {
       return false;
     }
     report_.energy_change_impacts += impact.energy_after - impact.energy_before;
+    note_jam(before, -d_dot.minCoeff());
     return true;
+  }
+
+  /// Impulses that settle what all but rests change the slip by a few times what they settle. Where
+  /// they change it a thousand times as much the state was inconsistent, and they jumped.
+  void note_jam(const State& before, double speed) {
+    constexpr double kJumps = 1e3;
+    if (speed > settings_.resting_speed) {
+      return;
+    }
+    Event event{.kind = EventKind::kImpactWithoutCollision, .time = report_.time};
+    bool has_jumped = false;
+    for (const Contact& contact : contacts_) {
+      const Vec3 slip = tangential_slip(bodies_, before, contact);
+      const Vec3 change = tangential_slip(bodies_, state_, contact) - slip;
+      has_jumped =
+          has_jumped || (contact.material.friction > 0.0 && change.norm() > kJumps * speed &&
+                         change.norm() > settings_.resting_speed);
+      if (contact.material.friction > 0.0 && slip.norm() > event.speed) {
+        event.speed = slip.norm();
+        event.body_a = contact.body_a;
+        event.body_b = contact.body_b;
+      }
+    }
+    if (has_jumped) {
+      report_.events.push_back(event);
+    }
   }
 
   /// An impact, or, slower and with 0 < e < 1, the end of the bounces; settling is no event.

@@ -56,7 +56,8 @@ enum class EventKind : std::uint8_t {
   kSlip,      ///< a contact that stuck begins to slide
   /// No finite forces of the resting contacts were found (Painleve's paradox: Event::forces_status
   /// says whether that is proved); the impulses jumped though nothing approached:
-  /// impact_without_collision.h.
+  /// impact_without_collision.h. So is a settling of contacts slower than resting_speed whose
+  /// impulses change the slip a thousand times as much (forces_status is then kNotRun).
   kImpactWithoutCollision,
 };
 [[nodiscard]] std::string_view to_string(EventKind kind);
