@@ -238,7 +238,8 @@ Certifier::Measure Certifier::measure_cone(const Problem& problem, std::size_t c
   return sum;
 }
 
-bool Certifier::measure(const Problem& problem, const VectorRef& z) {
+bool Certifier::measure(const Problem& problem, const VectorRef& z,
+                        const std::vector<int>* island) {
   const Index n = problem.size();
   if (z.size() != n || !z.allFinite()) {
     return false;
@@ -246,25 +247,32 @@ bool Certifier::measure(const Problem& problem, const VectorRef& z) {
   z_.assign(z.data(), z.data() + n);
   multiply_by_matrix(problem);
   find_bounds(problem);
-  measures_.assign(n, Measure{});
   for (Index i = 0; i < n; ++i) {
+    Total& total = totals_[island != nullptr ? (*island)[i] : 0];
+    total.add_row(size_[i], problem.q[i], z_[i]);
     const int cone = problem.cones.empty() ? -1 : cone_of_row_[i];
-    if (cone < 0) {
-      measures_[i] = measure_row(i);
-    } else if (problem.cones[cone].normal_row == i) {
-      measures_[i] = measure_cone(problem, cone);
+    if (cone >= 0 && problem.cones[cone].normal_row != i) {
+      continue;
     }
-    if (!std::isfinite(measures_[i].natural) || !std::isfinite(measures_[i].unit_free) ||
-        !std::isfinite(size_[i])) {
+    const Measure measure = cone < 0 ? measure_row(i) : measure_cone(problem, cone);
+    if (!measure.is_finite() || !std::isfinite(size_[i])) {
       return false;
     }
+    total.add_group(static_cast<int>(i), measure);
   }
   return true;
 }
 
-void Certifier::Total::add(int row, const Measure& measure, long double row_size, double q,
-                           long double z) {
+void Certifier::Total::add_row(long double row_size, double q, long double z) {
   is_zero = is_zero && z == 0.0L;
+  size = std::max(size, row_size);
+  natural_size = std::max(natural_size, row_size);
+  q_inf = std::max(q_inf, std::abs(q));
+}
+
+void Certifier::Total::add_group(int row, const Measure& measure) {
+  const auto least = [](double a, double b) { return b < a || std::isnan(a) ? b : a; };
+  const auto largest = [](double a, double b) { return b > a || std::isnan(a) ? b : a; };
   most.natural = std::max(most.natural, measure.natural);
   if (measure.unit_free > most.unit_free || worst_row < 0) {
     most.unit_free = measure.unit_free;
@@ -272,12 +280,11 @@ void Certifier::Total::add(int row, const Measure& measure, long double row_size
   }
   most.backward = std::max(most.backward, measure.backward);
   most.z_dot_w += measure.z_dot_w;
-  most.min_z = std::fmin(most.min_z, measure.min_z);
-  most.min_w = std::fmin(most.min_w, measure.min_w);
-  most.cone_violation = std::fmax(most.cone_violation, measure.cone_violation);
-  size = std::max({size, row_size, measure.scaled_boundary});
-  natural_size = std::max({natural_size, row_size, measure.boundary});
-  q_inf = std::max(q_inf, std::abs(q));
+  most.min_z = least(most.min_z, measure.min_z);
+  most.min_w = least(most.min_w, measure.min_w);
+  most.cone_violation = largest(most.cone_violation, measure.cone_violation);
+  size = std::max(size, measure.scaled_boundary);
+  natural_size = std::max(natural_size, measure.boundary);
 }
 
 bool Certifier::Total::needs_exactness() const {
@@ -440,10 +447,14 @@ Certifier::Measure Certifier::bound_group(const Problem& problem, int first, int
   // A Coulomb cone's normal part by itself: mu |w_T| may hide a w_N < 0.
   sum = std::max(std::sqrt(w_tilde * w_tilde + slip), std::abs(w[0]));
   if (!is_inside || !(sum <= fine)) {
-    const Eigen::Matrix3d block = diagonal_block(problem.M, first, d);
-    scale_[first] = cone >= 0           ? largest_eigenvalue(block, d)
-                    : block(0, 0) > 0.0 ? block(0, 0)
-                                        : 1.0;
+    if (cone >= 0 && std::all_of(z, z + d, [](long double value) { return value == 0.0L; })) {
+      scale_[first] = 1.0;  // D |P_K(-w~ / D)| is the same for all D
+    } else {
+      const Eigen::Matrix3d block = diagonal_block(problem.M, first, d);
+      scale_[first] = cone >= 0           ? largest_eigenvalue(block, d)
+                      : block(0, 0) > 0.0 ? block(0, 0)
+                                          : 1.0;
+    }
     return cone < 0 ? measure_row(first) : measure_cone(problem, cone);
   }
   Measure measure;
@@ -470,7 +481,7 @@ Certifier::Measure Certifier::bound_group(const Problem& problem, int first, int
   return measure;
 }
 
-/// Fills measures_ and size_ with bounds. @return false where there are none
+/// Adds bounds to the total. @return false where there are none
 bool Certifier::bound(const Problem& problem, const VectorRef& z, double tolerance) {
   const auto* A = std::get_if<FactoredMatrix>(&problem.M);
   const Index n = problem.size();
@@ -493,18 +504,21 @@ bool Certifier::bound(const Problem& problem, const VectorRef& z, double toleran
   bound_sizes(problem, *A, z);
   find_bounds(problem);
   scale_.resize(n);
-  measures_.assign(n, Measure{});
+  Total& total = totals_.front();
   for (Index i = 0; i < n; ++i) {
     w_[i] += problem.q[i];
+    total.add_row(size_[i], problem.q[i], z_[i]);
   }
   const double fine = 0.1 * tolerance * q_inf;
   std::size_t cone = 0;
   for (int i = 0; i < n;) {
     const bool starts_cone = cone < problem.cones.size() && problem.cones[cone].normal_row == i;
-    measures_[i] = bound_group(problem, i, starts_cone ? static_cast<int>(cone) : -1, fine);
-    if (!std::isfinite(measures_[i].natural) || !std::isfinite(measures_[i].unit_free)) {
+    const Measure measure =
+        bound_group(problem, i, starts_cone ? static_cast<int>(cone) : -1, fine);
+    if (!measure.is_finite()) {
       return false;
     }
+    total.add_group(i, measure);
     i += starts_cone ? problem.cones[cone++].dimension : 1;
   }
   return true;
@@ -512,11 +526,8 @@ bool Certifier::bound(const Problem& problem, const VectorRef& z, double toleran
 
 Certificate Certifier::certify_quickly(const Problem& problem, const VectorRef& z, double tolerance,
                                        Vector* w) {
+  totals_.assign(1, Total{});
   if (bound(problem, z, tolerance)) {
-    totals_.assign(1, Total{});
-    for (Index i = 0; i < problem.size(); ++i) {
-      totals_[0].add(static_cast<int>(i), measures_[i], size_[i], problem.q[i], z_[i]);
-    }
     Certificate certificate = totals_[0].certificate();
     certificate.backward_error = Certificate::kNaN;
     if (judge(certificate, tolerance, Status::kStalled) == Status::kSolved) {
@@ -532,15 +543,12 @@ Certificate Certifier::certify_quickly(const Problem& problem, const VectorRef& 
 
 Certificate Certifier::certify(const Problem& problem, const VectorRef& z, Vector* w) {
   const Index n = problem.size();
-  if (!measure(problem, z)) {
+  totals_.assign(1, Total{});
+  if (!measure(problem, z, nullptr)) {
     if (w != nullptr) {
       w->setConstant(n, Certificate::kNaN);
     }
     return refuse();
-  }
-  totals_.assign(1, Total{});
-  for (Index i = 0; i < n; ++i) {
-    totals_[0].add(static_cast<int>(i), measures_[i], size_[i], problem.q[i], z_[i]);
   }
   settle_exactly(problem, z, nullptr);
   if (w != nullptr) {
@@ -552,14 +560,10 @@ Certificate Certifier::certify(const Problem& problem, const VectorRef& z, Vecto
 
 void Certifier::certify_islands(const Problem& problem, const VectorRef& z, const Islands& islands,
                                 std::vector<Certificate>& certificates) {
-  if (!measure(problem, z)) {
+  totals_.assign(islands.count, Total{});
+  if (!measure(problem, z, &islands.island)) {
     certificates.assign(islands.count, refuse());
     return;
-  }
-  totals_.assign(islands.count, Total{});
-  for (Index i = 0; i < problem.size(); ++i) {
-    totals_[islands.island[i]].add(static_cast<int>(i), measures_[i], size_[i], problem.q[i],
-                                   z_[i]);
   }
   settle_exactly(problem, z, &islands.island);
   certificates.resize(islands.count);

@@ -5,6 +5,7 @@
 #include <signorini/lcp/problem.h>
 #include <signorini/lcp/status.h>
 
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -110,6 +111,9 @@ class Certifier {
     double min_z = Certificate::kNaN;
     double min_w = Certificate::kNaN;
     double cone_violation = Certificate::kNaN;
+    [[nodiscard]] bool is_finite() const {
+      return std::isfinite(natural) && std::isfinite(unit_free);
+    }
   };
   /// Everything that a certificate is made of.
   struct Total {
@@ -120,13 +124,17 @@ class Certifier {
     int worst_row = -1;
     bool is_zero = true;          // z, in all rows
     bool solved_exactly = false;  // what settle_exactly() says
-    void add(int row, const Measure& measure, long double row_size, double q, long double z);
+    void add_row(long double row_size, double q, long double z);
+    /// @param row of a cone: the normal
+    void add_group(int row, const Measure& measure);
     /// Whether rounding hides if the numerator of a problem with q = 0 is 0.
     [[nodiscard]] bool needs_exactness() const;
     [[nodiscard]] Certificate certificate() const;
   };
-  /// Fills everything below for z. @return false if a number is not finite.
-  [[nodiscard]] bool measure(const Problem& problem, const VectorRef& z);
+  /// Fills everything below for z and adds it to the totals, which are new.
+  /// @param island of every row; null: all are one @return false if a number is not finite
+  [[nodiscard]] bool measure(const Problem& problem, const VectorRef& z,
+                             const std::vector<int>* island);
   void multiply_by_matrix(const Problem& problem);
   [[nodiscard]] bool bound(const Problem& problem, const VectorRef& z, double tolerance);
   void bound_sizes(const Problem& problem, const FactoredMatrix& A, const VectorRef& z);
@@ -147,7 +155,6 @@ class Certifier {
   std::vector<Eigen::Matrix3d> cone_blocks_;     // M_cc
   std::vector<int> cone_of_row_;                 // -1: none
   std::vector<Bounds> bounds_;
-  std::vector<Measure> measures_;
   FactoredMatrix::VisitWorkspace visit_;
   std::vector<Total> totals_;      // of the problem, or of its islands
   std::vector<Interval> product_;  // M z without rounding, where q = 0

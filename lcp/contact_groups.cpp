@@ -137,7 +137,7 @@ double ContactGroups::residual(const Problem& problem, const Vector& z, const Ve
   }
   double most = 0.0;
   for (const Group& group : groups_) {
-    most = std::max(most, residual_of(problem, group, z, w, fine));
+    most = std::max(most, residual_of(problem, group, z, w, std::max(fine, most)));
   }
   return most;
 }

@@ -37,7 +37,8 @@ class ContactGroups {
 
   /// The larger residual of the certificate at z, in double, or a bound of it; +infinity if not
   /// finite. For a z inside its cone |w~_c| bounds both, whatever the scale of the group, since
-  /// projecting shortens distances: no diagonal block is needed where contacts stick.
+  /// projecting shortens distances: no diagonal block is needed where contacts stick, nor where
+  /// another group's residual is larger than the bound.
   /// @param w M z + q @param fine bounds up to this are not made sharper
   [[nodiscard]] double residual(const Problem& problem, const Vector& z, const Vector& w,
                                 double fine) const;

@@ -9,6 +9,25 @@
 #include <vector>
 
 namespace signorini::lcp {
+namespace {
+
+constexpr int kRigidBody = 6;  // the dimension that the compiler gets to unroll
+
+template <typename Scalar>
+inline void add_row_times(const double* row, Scalar z, Scalar* p, int dimension) {
+  for (int k = 0; k < dimension; ++k) {
+    p[k] += row[k] * z;
+  }
+}
+
+template <typename Scalar>
+inline void add_product(const double* row, const Scalar* v, int dimension, Scalar& sum) {
+  for (int k = 0; k < dimension; ++k) {
+    sum += row[k] * v[k];
+  }
+}
+
+}  // namespace
 
 int FactoredMatrix::add_row(double compliance) {
   if (!(compliance >= 0.0) || !std::isfinite(compliance)) {
@@ -59,10 +78,12 @@ void FactoredMatrix::transpose_times(const Scalar* z, Scalar* p) const {
   std::fill(p, p + degrees_of_freedom(), Scalar(0));
   for (int i = 0; i < rows(); ++i) {
     for (const Entry& entry : entries(i)) {
-      const double* v = values(entry);
       Scalar* target = p + mass.offset(entry.block);
-      for (int k = 0; k < mass.dimension(entry.block); ++k) {
-        target[k] += v[k] * z[i];
+      const int dimension = mass.dimension(entry.block);
+      if (dimension == kRigidBody) {
+        add_row_times(values(entry), z[i], target, kRigidBody);
+      } else {
+        add_row_times(values(entry), z[i], target, dimension);
       }
     }
   }
@@ -80,10 +101,12 @@ void FactoredMatrix::times(const Scalar* v, const Scalar* z, Scalar* w) const {
   for (int i = 0; i < rows(); ++i) {
     Scalar sum = Scalar(compliance_[i]) * z[i];
     for (const Entry& entry : entries(i)) {
-      const double* row = values(entry);
       const Scalar* block = v + mass.offset(entry.block);
-      for (int k = 0; k < mass.dimension(entry.block); ++k) {
-        sum += row[k] * block[k];
+      const int dimension = mass.dimension(entry.block);
+      if (dimension == kRigidBody) {
+        add_product(values(entry), block, kRigidBody, sum);
+      } else {
+        add_product(values(entry), block, dimension, sum);
       }
     }
     w[i] = sum;

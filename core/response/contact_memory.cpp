@@ -53,13 +53,13 @@ void ContactMemory::remember(const ConeProblem& cones, const ContactSet& contact
 }
 
 void ContactMemory::add(const PyramidProblem& pyramid, const ContactSet& contacts,
-                        const lcp::VectorRef& z) {
+                        const lcp::VectorRef& z, bool corrected) {
   const int normals = static_cast<int>(contacts.size());
   const int frictional = static_cast<int>(pyramid.frictional.size());
   contact_impulses(pyramid, contacts, z, impulses_);
   const std::size_t first = entries_.size();
   for (int i = 0; i < normals; ++i) {
-    add_entry(contacts[i], z[i], impulses_[i]);
+    add_entry(contacts[i], z[i], impulses_[i], corrected);
   }
   for (int c = 0; c < frictional; ++c) {
     entries_[first + pyramid.frictional[c]].slip = z[normals + pyramid.sides * frictional + c];
@@ -67,17 +67,18 @@ void ContactMemory::add(const PyramidProblem& pyramid, const ContactSet& contact
 }
 
 void ContactMemory::add(const ConeProblem& cones, const ContactSet& contacts,
-                        const lcp::VectorRef& z) {
+                        const lcp::VectorRef& z, bool corrected) {
   contact_impulses(cones, contacts, z, impulses_);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    add_entry(contacts[i], z[cones.normal_row[i]], impulses_[i]);
+    add_entry(contacts[i], z[cones.normal_row[i]], impulses_[i], corrected);
   }
 }
 
-void ContactMemory::add_entry(const Contact& contact, double normal, const Vec3& whole) {
+void ContactMemory::add_entry(const Contact& contact, double normal, const Vec3& whole,
+                              bool corrected) {
   entries_.push_back({contact.body_a, contact.body_b, contact.feature_id, normal,
                       whole - normal * contact.normal, whole, 0.0,
-                      static_cast<int>(entries_.size())});
+                      static_cast<int>(entries_.size()), corrected});
 }
 
 void ContactMemory::sort() {  // std::stable_sort allocates
@@ -93,16 +94,17 @@ const ContactMemory::Entry* ContactMemory::find(const Contact& contact) const {
   return found != entries_.end() && key(*found) == key(contact) ? &*found : nullptr;
 }
 
-int ContactMemory::recall(const PyramidProblem& pyramid, const ContactSet& contacts,
-                          lcp::Vector& z) const {
+ContactMemory::Recalled ContactMemory::recall(const PyramidProblem& pyramid,
+                                              const ContactSet& contacts, lcp::Vector& z) const {
   const int normals = static_cast<int>(contacts.size());
   const int frictional = static_cast<int>(pyramid.frictional.size());
   z.setZero(pyramid.problem.size());
-  int known = 0;
+  Recalled recalled;
   for (int i = 0; i < normals; ++i) {
     if (const Entry* entry = find(contacts[i])) {
       z[i] = std::max(entry->normal, 0.0);
-      ++known;
+      ++recalled.known;
+      recalled.corrected |= entry->corrected;
     }
   }
   for (int c = 0; c < frictional; ++c) {
@@ -113,19 +115,20 @@ int ContactMemory::recall(const PyramidProblem& pyramid, const ContactSet& conta
       z[normals + pyramid.sides * frictional + c] = std::max(entry->slip, 0.0);
     }
   }
-  return known;
+  return recalled;
 }
 
-int ContactMemory::recall(const ConeProblem& cones, const ContactSet& contacts,
-                          lcp::Vector& z) const {
+ContactMemory::Recalled ContactMemory::recall(const ConeProblem& cones, const ContactSet& contacts,
+                                              lcp::Vector& z) const {
   z.setZero(cones.problem.size());
-  int known = 0;
+  Recalled recalled;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const Entry* entry = find(contacts[i]);
     if (entry == nullptr) {
       continue;
     }
-    ++known;
+    ++recalled.known;
+    recalled.corrected |= entry->corrected;
     const int row = cones.normal_row[i];
     z[row] = std::max(entry->whole.dot(contacts[i].normal), 0.0);
     if (cones.friction[i] > 0.0) {
@@ -133,7 +136,7 @@ int ContactMemory::recall(const ConeProblem& cones, const ContactSet& contacts,
       z[row + 2] = along(cones.frames[i].t2, entry->whole);
     }
   }
-  return known;
+  return recalled;
 }
 
 }  // namespace signorini

@@ -161,7 +161,7 @@ void ContactSolver::collect(std::size_t number, const ContactIsland& island) {
       fresh_.impulses[island.members[j]] = impulses_[j];
       fresh_.moments[island.members[j]] = moments_[j];
     }
-    answer.velocity.remember(answer.contacts, result.z, next_memory_);
+    answer.velocity.remember(answer.contacts, result.z, answer.corrected, next_memory_);
   }
 }
 

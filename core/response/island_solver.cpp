@@ -19,6 +19,9 @@ constexpr double kExactAim = 1e-8;  // m/s
 // leaves of any problem: the answer is then solved to rounding, or not solved.
 constexpr double kLeastTolerance = 1e-20;
 constexpr double kMostTolerance = 0.1;
+// What the solvers are told of what is asked after a correction, and the least that comes of it.
+constexpr double kAfterCorrection = 0.1;
+constexpr double kLeastAfterCorrection = 1e-10;
 constexpr double kRowsOfAUnit = 1000.0;
 constexpr double kMostIterations = 1e9;  // that a budget may allow
 constexpr double kLeastSeconds = 1e-9;   // a solver's limit is > 0
@@ -86,6 +89,7 @@ void IslandSolver::solve(std::span<const JointRow> joints, const StepMemory& mem
   const lcp::Problem& problem = island.velocity.problem();
   lcp::Result& result = island.result;
   island.work = 0.0;
+  island.corrected = false;
   lcp::start_result(problem.size(), result);
   if (island.velocity.closed_form(result.z)) {
     result.solver = "closed form";
@@ -96,9 +100,12 @@ void IslandSolver::solve(std::span<const JointRow> joints, const StepMemory& mem
       return;
     }
   }
-  const bool warm = settings_.warm_start &&
-                    (island.velocity.recall(island.contacts, memory.contacts, island.start) > 0 ||
-                     !joints.empty());
+  ContactMemory::Recalled recalled;
+  if (settings_.warm_start) {
+    recalled = island.velocity.recall(island.contacts, memory.contacts, island.start);
+  }
+  const bool warm = settings_.warm_start && (recalled.known > 0 || !joints.empty());
+  after_correction_ = recalled.corrected;
   if (warm) {
     recall_joints(joints, memory.joints, island.start);
   }
@@ -145,8 +152,11 @@ void IslandSolver::choose(const lcp::Problem& problem, bool is_warm, bool is_lim
 /// What a solver of the dial is told.
 double IslandSolver::aim(std::string_view name, const lcp::Problem& problem) const {
   const double asked = tolerance(problem);
-  return steps_are_exact(name) ? std::min(asked, tolerance_for(kExactAim, largest_q(problem)))
-                               : asked;
+  const double aimed =
+      steps_are_exact(name) ? std::min(asked, tolerance_for(kExactAim, largest_q(problem))) : asked;
+  return after_correction_ && !sweeps(name)
+             ? std::min(aimed, std::max(kAfterCorrection * aimed, kLeastAfterCorrection))
+             : aimed;
 }
 
 void IslandSolver::attempt(const lcp::Problem& problem, std::string_view name, int most,
@@ -235,6 +245,9 @@ void IslandSolver::solve_by_dial(const lcp::Problem& problem, const StepBudget& 
     result.detail += (result.detail.empty() ? "" : "; ") + std::string("budget used up");
   }
   result.statistics.solve_seconds = seconds;
+  island.corrected = is_warm && lcp::is_solved(result.status) && !attempts_.empty() &&
+                     attempts_.back().solver == "sticking" &&
+                     attempts_.back().statistics.factorizations > 0;
   std::swap(result.attempts, attempts_);
 }
 

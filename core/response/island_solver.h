@@ -41,6 +41,8 @@ struct IslandAnswer {
   lcp::Vector start;  ///< of the warm start
   lcp::Result result;
   double work = 0.0;  ///< what was spent, in units of StepBudget::work
+  /// Of the dial: whether a start that nearly was the answer was made so (by `sticking`).
+  bool corrected = false;
 };
 
 /// Solves islands one after the other with solvers of its own, for one thread. The answer depends
@@ -54,6 +56,12 @@ struct IslandAnswer {
 ///   cone-interior-point (30 steps), both to 1e-8 m/s, judged by the residual; nsgs (preview: 50
 ///   sweeps, else 200); auto
 /// - else, and without friction: auto
+///
+/// What is at rest starts from its answer, and stays as it is while that is far below what is
+/// asked. A start that no longer is gets corrected, and the impulses of that step also stop what
+/// little moves: the next step must not start from them unasked, or it sets going as much the other
+/// way, and every second step is a correction. So after one the exact solvers and auto are told a
+/// tenth (down to 1e-10 of |q|), while the residual asked judges as ever.
 ///
 /// With a budget auto, which knows none, gives way to interior-point (no friction), alart-curnier
 /// and nsgs. What the rest of the budget does not pay for is left out; where it pays for nothing
@@ -99,7 +107,8 @@ class IslandSolver {
   lcp::Certifier certifier_;
   lcp::BestIterate start_;
   std::vector<Try> chain_;
-  lcp::Result another_;  // of an attempt that is not an island's first
+  bool after_correction_ = false;  // the island's start
+  lcp::Result another_;            // of an attempt that is not an island's first
   std::vector<lcp::Attempt> attempts_;
 };
 

@@ -267,7 +267,7 @@ void TimeStepper::collect(int number, const ContactIsland& island, const State& 
   }
   report.status = worse(report.status, result.status);
   if (usable) {
-    answer.velocity.remember(answer.contacts, result.z, next_memory_);
+    answer.velocity.remember(answer.contacts, result.z, answer.corrected, next_memory_);
     answer.velocity.impulses(answer.contacts, result.z, impulses_);
     answer.velocity.moments(result.z, moments_);
     for (std::size_t j = 0; j < island.members.size(); ++j) {

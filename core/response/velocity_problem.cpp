@@ -115,13 +115,13 @@ void VelocityProblem::moments(const lcp::VectorRef& z, std::vector<Vec3>& moment
   add_contact_moments(turning_, z.segment(z.size() - joints_ - rows, rows), moments);
 }
 
-void VelocityProblem::remember(const ContactSet& contacts, const lcp::VectorRef& z,
+void VelocityProblem::remember(const ContactSet& contacts, const lcp::VectorRef& z, bool corrected,
                                ContactMemory& memory) const {
-  std::visit([&](const auto& form) { memory.add(form, contacts, z); }, form_);
+  std::visit([&](const auto& form) { memory.add(form, contacts, z, corrected); }, form_);
 }
 
-int VelocityProblem::recall(const ContactSet& contacts, const ContactMemory& memory,
-                            lcp::Vector& z) const {
+ContactMemory::Recalled VelocityProblem::recall(const ContactSet& contacts,
+                                                const ContactMemory& memory, lcp::Vector& z) const {
   return std::visit([&](const auto& form) { return memory.recall(form, contacts, z); }, form_);
 }
 

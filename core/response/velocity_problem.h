@@ -48,14 +48,16 @@ class VelocityProblem {
   /// Of rolling and spinning friction, on A, world axes, N m s, one a contact.
   void moments(const lcp::VectorRef& z, std::vector<Vec3>& moments) const;
   /// Adds to memory; see ContactMemory::add().
-  void remember(const ContactSet& contacts, const lcp::VectorRef& z, ContactMemory& memory) const;
+  void remember(const ContactSet& contacts, const lcp::VectorRef& z, bool corrected,
+                ContactMemory& memory) const;
   /// The solution of a single contact without joints and without rolling and spinning friction
   /// where it has a closed form: without friction f = max(0, -q/A); with a cone or a box 0 where
   /// q_N >= 0, else -A^-1 q where that is within the bounds. @return whether it has; z is written
   /// only then
   [[nodiscard]] bool closed_form(lcp::Vector& z) const;
-  /// @return how many contacts were known
-  int recall(const ContactSet& contacts, const ContactMemory& memory, lcp::Vector& z) const;
+  /// See ContactMemory::recall().
+  ContactMemory::Recalled recall(const ContactSet& contacts, const ContactMemory& memory,
+                                 lcp::Vector& z) const;
 
  private:
   [[nodiscard]] bool has_turning(int normal_row, const ConeProblem& cones) const;

@@ -1,3 +1,6 @@
+#include <signorini/collision/collision_world.h>
+#include <signorini/core/response/time_stepper.h>
+
 #include "bench/extremes_study.h"
 #include "bench/stacks_study.h"
 
@@ -38,6 +41,29 @@ TEST(StacksStudy, EveryPositionOfTheDialSolvesAPyramid) {
     EXPECT_TRUE(report.passed()) << out.str();
     EXPECT_LT(report.rows.at(0).drift, 1e-8) << position;
   }
+}
+
+/// What a step corrects is known to the next one: else that starts from the correction, undoes it,
+/// and every second step factors.
+TEST(StacksStudy, APyramidAtRestIsSeldomCorrected) {
+  const SteppedScene scene = pyramid_scene(4, 1.0 / 60.0, 4.0);
+  collision::CollisionWorld world(scene.bodies, scene.colliders, PairingRule::kMinimum);
+  TimeStepSettings settings;
+  settings.step = scene.step;
+  settings.gravity = scene.gravity;
+  settings.margin = scene.margin;
+  settings.accuracy = Accuracy::game();
+  TimeStepper stepper(scene.bodies, world, settings);
+  State state = scene.state;
+  StepReport report;
+  int corrected = 0;
+  for (int k = 0; k < 240; ++k) {
+    stepper.step(state, report);
+    ASSERT_TRUE(lcp::is_solved(report.status)) << k;
+    corrected += report.result.statistics.factorizations > 0 ? 1 : 0;
+  }
+  EXPECT_GT(corrected, 1);
+  EXPECT_LE(corrected, 24);
 }
 
 double drift_of(const SteppedScene& scene) {

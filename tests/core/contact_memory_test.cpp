@@ -50,7 +50,7 @@ TEST(ContactMemory, RecallsTheSameImpulsesWhateverTheOrderOfTheContacts) {
   const ContactSet now = {kContacts[2], kContacts[0], kContacts[1]};
   const PyramidProblem after = pyramid_of(now, 8, Vec3(-0.2, 0.1, 0.0));  // turned frames
   lcp::Vector start;
-  EXPECT_EQ(memory.recall(after, now, start), 3);
+  EXPECT_EQ(memory.recall(after, now, start).known, 3);
   ASSERT_EQ(start.size(), z.size());
   EXPECT_GE(start.minCoeff(), 0.0);
   const auto old_impulses = contact_impulses(before, kContacts, z);
@@ -69,10 +69,24 @@ TEST(ContactMemory, NewContactsStartAtZero) {
   memory.remember(before, kContacts, numbered(before));
   const ContactSet now = {contact(1, 0, 8), contact(0, 1, 7), contact(3, 1, 7)};
   lcp::Vector start = lcp::Vector::Ones(1);
-  EXPECT_EQ(memory.recall(pyramid_of(now, 4, Vec3::UnitX()), now, start), 0);
+  EXPECT_EQ(memory.recall(pyramid_of(now, 4, Vec3::UnitX()), now, start).known, 0);
   EXPECT_EQ(start, lcp::Vector(lcp::Vector::Zero(18)));
   memory.forget();
-  EXPECT_EQ(memory.recall(before, kContacts, start), 0);
+  EXPECT_EQ(memory.recall(before, kContacts, start).known, 0);
+}
+
+TEST(ContactMemory, SaysWhetherAnImpulseWasACorrection) {
+  const PyramidProblem before = pyramid_of(kContacts, 4, Vec3::UnitX());
+  ContactMemory memory;
+  lcp::Vector start;
+  memory.remember(before, kContacts, numbered(before));
+  EXPECT_FALSE(memory.recall(before, kContacts, start).corrected);
+  const ContactSet one = {contact(3, 1, 9)};
+  const PyramidProblem other = pyramid_of(one, 4, Vec3::UnitX());
+  memory.add(other, one, lcp::Vector::Ones(other.problem.size()), true);
+  memory.sort();
+  EXPECT_FALSE(memory.recall(before, kContacts, start).corrected);
+  EXPECT_TRUE(memory.recall(other, one, start).corrected);
 }
 
 TEST(ContactMemory, ADirectionAlongAnEdgeOfThePyramidIsHit) {
