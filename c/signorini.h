@@ -337,7 +337,8 @@ typedef struct signorini_contact {
   int32_t body_a;      /**< numbers in the array of bodies, different, one at least dynamic */
   int32_t body_b;      /**< the other */
   double point_a[3];   /**< on the surface of A, m */
-  double point_b[3];   /**< on the surface of B, m */
+  double point_b[3];   /**< on the surface of B, m; point_a - point_b is gap times normal: impulses
+                            act in the middle, which is the same only then */
   double normal[3];    /**< unit, from B to A: an impulse f >= 0 pushes A along it, B against it */
   double gap;          /**< normal.(point_a - point_b), m; > 0 apart, < 0 overlapping */
   double friction;     /**< Coulomb's mu of the pair, >= 0 */

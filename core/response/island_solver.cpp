@@ -23,7 +23,8 @@ constexpr double kMostTolerance = 0.1;
 constexpr double kAfterCorrection = 0.1;
 constexpr double kLeastAfterCorrection = 1e-10;
 constexpr double kRowsOfAUnit = 1000.0;
-constexpr double kMostIterations = 1e9;  // that a budget may allow
+// However much a budget allows: a solver that has not ended by then does not.
+constexpr double kMostIterations = 1e4;
 constexpr double kLeastSeconds = 1e-9;   // a solver's limit is > 0
 
 double largest_q(const lcp::Problem& problem) {

@@ -7,10 +7,16 @@ namespace {
 
 constexpr double kLeastAlong = 1e-9;  // of a unit direction's part across N
 
+/// The part of v across N; again, as cancellation leaves a part along N of v all but along it.
+Vec3 part_across(const Vec3& normal, const Vec3& v) {
+  const Vec3 once = v - v.dot(normal) * normal;
+  return once - once.dot(normal) * normal;
+}
+
 }  // namespace
 
 TangentFrame tangent_frame(const Vec3& normal, const Vec3& slip) {
-  const Vec3 tangential = slip - slip.dot(normal) * normal;
+  const Vec3 tangential = part_across(normal, slip);
   const double speed = tangential.norm();
   const Vec3 t1 = speed >= kAligningSlip ? Vec3(tangential / speed) : normal.unitOrthogonal();
   return {t1, normal.cross(t1)};
@@ -23,7 +29,7 @@ TangentFrame friction_frame(const Contact& contact, const Vec3& slip) {
   }
   const Vec3& normal = contact.normal;
   const Vec3 direction = contact.friction_direction.normalized();  // zero stays
-  const Vec3 along = direction - direction.dot(normal) * normal;
+  const Vec3 along = part_across(normal, direction);
   const Vec3 t1 = along.norm() > kLeastAlong ? along.normalized() : normal.unitOrthogonal();
   return {t1, ratio * normal.cross(t1)};
 }

@@ -75,6 +75,16 @@ TEST(FrictionPyramid, TheFrameIsAlignedWithTheSlip) {
   EXPECT_LT((frame.t2 - normal.cross(frame.t1)).norm(), 1e-15);
 }
 
+TEST(FrictionPyramid, TheFrameIsAcrossTheNormalHoweverFastAnImpactIs) {
+  const Vec3 normal = Vec3(1, 2, 3).normalized();
+  const Vec3 aside = normal.unitOrthogonal();
+  for (const double fast : {1.0, 1e3, 1e6}) {
+    const TangentFrame frame = tangent_frame(normal, -fast * normal + 2.0 * kAligningSlip * aside);
+    EXPECT_NEAR(frame.t1.dot(normal), 0.0, 1e-15) << fast;
+    EXPECT_NEAR(frame.t2.dot(normal), 0.0, 1e-15) << fast;
+  }
+}
+
 TEST(FrictionPyramid, WithoutSlipTheFrameDependsOnTheNormalAlone) {
   const Vec3 normal = Vec3(1, 2, 3).normalized();
   const TangentFrame still = tangent_frame(normal, Vec3::Zero());

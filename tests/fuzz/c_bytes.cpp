@@ -2,18 +2,25 @@
 
 #include "byte_reader.h"
 #include "lcp_bytes.h"
+#include "plain_problem.h"
+#include "stated_contacts.h"
+#include "stated_problem.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
+#include <span>
 #include <string>
+#include <string_view>
 
 namespace signorini::testing {
 namespace {
 
 constexpr int kRoom = 64;  // numbers in every array: more than any plausible count reads
 
-/// The handles, and arrays to hand in.
+/// The handles, arrays to hand in, and what the handles were told.
 struct Session {
   signorini_problem* problem = nullptr;
   signorini_solver* solver = nullptr;
@@ -24,6 +31,9 @@ struct Session {
   std::array<double, kRoom> others{};
   std::array<std::int32_t, kRoom> indices{};
   std::array<std::int32_t, kRoom> starts{};
+  PlainProblem stated;
+  double tolerance = 1e-8;  // of the solver
+  StatedContacts stated_contacts;
 
   Session() {
     require(signorini_problem_create(&problem) == 0 && signorini_result_create(&result) == 0 &&
@@ -32,6 +42,7 @@ struct Session {
                 signorini_contact_result_create(&contact_result) == 0,
             "handles are made");
     signorini_solver_set_number(solver, "max_iterations", 200);
+    signorini_contact_solver_set_number(contact_solver, "max_iterations", 200);
   }
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -61,46 +72,123 @@ void fill(ByteReader& bytes, Session& s) {
   }
 }
 
+/// @return whether it was taken
+bool taken(signorini_error error) {
+  check(error);
+  return error == SIGNORINI_OK;
+}
+
+void set_factored(ByteReader& bytes, std::int64_t n, std::int32_t kind, const double* q,
+                  Session& s) {
+  // Blocks of at most two rows: their numbers fit the room.
+  std::array<std::int32_t, kRoom> sizes{};
+  for (std::int32_t& size : sizes) {
+    size = bytes.byte() >= 250 ? 1'000'000'000 : bytes.below(3);
+  }
+  const double* compliance = bytes.below(2) == 0 ? nullptr : s.others.data();
+  const std::int64_t entries = bytes.count();
+  const std::int64_t blocks = bytes.count();
+  if (taken(signorini_problem_set_factored(s.problem, n, entries, s.starts.data(), s.indices.data(),
+                                           s.numbers.data(), blocks, sizes.data(), kind,
+                                           s.numbers.data(), compliance, q))) {
+    s.stated =
+        stated_factored(static_cast<int>(n), s.starts.data(), s.indices.data(), s.numbers.data(),
+                        std::span(sizes).first(blocks), kind, s.numbers.data(), compliance, q);
+  }
+}
+
 void set_problem(ByteReader& bytes, Session& s) {
   const std::int64_t n = bytes.count();
+  const auto rows = static_cast<int>(n);
   const std::int32_t order = bytes.below(3);
   const double* q = bytes.byte() == 255 ? nullptr : s.others.data();
   switch (bytes.below(3)) {
-    case 0: check(signorini_problem_set_dense(s.problem, n, order, s.numbers.data(), q)); break;
-    case 1:
-      check(signorini_problem_set_sparse(s.problem, n, order, bytes.count(), s.starts.data(),
-                                         s.indices.data(), s.numbers.data(), q));
-      break;
-    default: {
-      // Blocks of at most two rows: their numbers fit the room.
-      std::array<std::int32_t, kRoom> sizes{};
-      for (std::int32_t& size : sizes) {
-        size = bytes.byte() >= 250 ? 1'000'000'000 : bytes.below(3);
+    case 0:
+      if (taken(signorini_problem_set_dense(s.problem, n, order, s.numbers.data(), q))) {
+        s.stated = stated_dense(rows, order, s.numbers.data(), q);
       }
-      const double* compliance = bytes.below(2) == 0 ? nullptr : s.others.data();
-      check(signorini_problem_set_factored(s.problem, n, bytes.count(), s.starts.data(),
-                                           s.indices.data(), s.numbers.data(), bytes.count(),
-                                           sizes.data(), order, s.numbers.data(), compliance, q));
       break;
+    case 1:
+      if (taken(signorini_problem_set_sparse(s.problem, n, order, bytes.count(), s.starts.data(),
+                                             s.indices.data(), s.numbers.data(), q))) {
+        s.stated =
+            stated_sparse(rows, order, s.starts.data(), s.indices.data(), s.numbers.data(), q);
+      }
+      break;
+    default: set_factored(bytes, n, order, q, s); break;
+  }
+}
+
+void set_bounds(ByteReader& bytes, Session& s) {
+  const std::int64_t n = bytes.count();
+  const double* lower = bytes.below(2) == 0 ? nullptr : s.others.data();
+  const double* upper = bytes.below(2) == 0 ? nullptr : s.numbers.data();
+  if (taken(signorini_problem_set_bounds(s.problem, n, lower, upper))) {
+    for (int i = 0; i < s.stated.n; ++i) {
+      s.stated.lower[i] = lower == nullptr ? 0.0 : lower[i];
+      s.stated.upper[i] = upper == nullptr ? std::numeric_limits<double>::infinity() : upper[i];
     }
+  }
+}
+
+void set_limits(ByteReader& bytes, Session& s) {
+  const std::int64_t count = bytes.count();
+  if (taken(signorini_problem_set_limits(s.problem, count, s.indices.data(), s.starts.data(),
+                                         s.numbers.data()))) {
+    s.stated.limits.clear();
+    for (std::int64_t k = 0; k < count; ++k) {
+      s.stated.limits.push_back({s.indices[k], s.starts[k], s.numbers[k]});
+    }
+  }
+}
+
+void set_cones(ByteReader& bytes, Session& s) {
+  const std::int64_t count = bytes.count();
+  const std::int32_t law = bytes.below(3);
+  if (const int dimension = bytes.below(4); dimension >= 2) {  // cones that can be
+    for (int k = 0; k < kRoom; ++k) {
+      s.starts[k] = dimension * k;
+      s.indices[k] = dimension;
+    }
+  }
+  if (taken(signorini_problem_set_cones(s.problem, count, s.starts.data(), s.indices.data(),
+                                        s.numbers.data(), law))) {
+    s.stated.cones.clear();
+    for (std::int64_t k = 0; k < count; ++k) {
+      s.stated.cones.push_back({s.starts[k], s.indices[k], s.numbers[k]});
+    }
+    s.stated.is_coulomb = law == SIGNORINI_COULOMB;
   }
 }
 
 void set_rows(ByteReader& bytes, Session& s) {
   switch (bytes.below(3)) {
-    case 0:
-      check(signorini_problem_set_bounds(s.problem, bytes.count(),
-                                         bytes.below(2) == 0 ? nullptr : s.others.data(),
-                                         bytes.below(2) == 0 ? nullptr : s.numbers.data()));
-      break;
-    case 1:
-      check(signorini_problem_set_limits(s.problem, bytes.count(), s.indices.data(),
-                                         s.starts.data(), s.numbers.data()));
-      break;
-    default:
-      check(signorini_problem_set_cones(s.problem, bytes.count(), s.starts.data(), s.indices.data(),
-                                        s.numbers.data(), bytes.below(3)));
-      break;
+    case 0: set_bounds(bytes, s); break;
+    case 1: set_limits(bytes, s); break;
+    default: set_cones(bytes, s); break;
+  }
+}
+
+void judge_proof(const Session& s) {
+  const double* ray = signorini_result_ray(s.result);
+  require(ray != nullptr, "a proof comes with its ray");
+  s.stated.judge_ray(ray, signorini_result_ray_bound(s.result));
+}
+
+void judge_answer(const Session& s) {
+  const signorini_status status = signorini_result_status(s.result);
+  signorini_certificate certificate{};
+  check(signorini_result_certificate(s.result, &certificate, sizeof certificate));
+  if (status == SIGNORINI_INFEASIBLE || status == SIGNORINI_NO_SOLUTION_BELOW) {
+    judge_proof(s);
+  }
+  if (status != SIGNORINI_NOT_RUN && status != SIGNORINI_INVALID_INPUT) {
+    s.stated.judge(signorini_result_z(s.result),
+                   {.natural_residual = certificate.natural_residual,
+                    .unit_free_residual = certificate.unit_free_residual,
+                    .is_solved = status == SIGNORINI_SOLVED,
+                    .is_to_rounding = status == SIGNORINI_SOLVED_TO_ROUNDING,
+                    .tolerance = s.tolerance});
   }
 }
 
@@ -113,13 +201,8 @@ void solve(ByteReader& bytes, Session& s) {
     return;
   }
   const std::int64_t n = signorini_result_size(s.result);
-  require(n == signorini_problem_size(s.problem), "z has a number a row");
-  signorini_certificate certificate{};
-  check(signorini_result_certificate(s.result, &certificate, sizeof certificate));
-  if (signorini_is_solved(signorini_result_status(s.result)) != 0) {
-    require(certificate.natural_residual <= 1e-5 && certificate.unit_free_residual <= 1e-5,
-            "what is solved has a small residual");
-  }
+  require(n == signorini_problem_size(s.problem) && n == s.stated.n, "z has a number a row");
+  judge_answer(s);
   signorini_attempt attempt{};
   for (std::int64_t k = 0; k <= signorini_result_attempt_count(s.result); ++k) {
     check(signorini_result_attempt(s.result, k, &attempt, sizeof attempt));
@@ -129,9 +212,24 @@ void solve(ByteReader& bytes, Session& s) {
 void set_dial(ByteReader& bytes, Session& s) {
   constexpr std::array kPositions = {"preview", "game", "engineering", "reference", "1e-6",
                                      "",        "x"};
-  const char* position = kPositions[bytes.below(static_cast<int>(kPositions.size()))];
-  check(signorini_contact_solver_set_text(s.contact_solver, "accuracy", position));
+  constexpr std::array kResiduals = {1e-2, 1e-4, 1e-8, 1e-13, 1e-6, std::nan(""), std::nan("")};
+  const int number = bytes.below(static_cast<int>(kPositions.size()));
+  if (taken(signorini_contact_solver_set_text(s.contact_solver, "accuracy", kPositions[number]))) {
+    s.stated_contacts.residual = kResiduals[number];
+  }
   check(signorini_contact_solver_set_number(s.contact_solver, "budget_work", bytes.number()));
+}
+
+void note_setting(std::string_view name, double value, StatedContacts& stated) {
+  if (name == "tolerance") {
+    stated.tolerance = value;
+  } else if (name == "friction_model") {
+    stated.friction_model = static_cast<signorini_friction_model>(value);
+  } else if (name == "touching_tolerance") {
+    stated.touching_tolerance = value;
+  } else if (name == "restitution_threshold") {
+    stated.restitution_threshold = value;
+  }
 }
 
 void set_setting(ByteReader& bytes, Session& s) {
@@ -144,15 +242,67 @@ void set_setting(ByteReader& bytes, Session& s) {
   if (std::strcmp(name, "max_iterations") == 0 && !(value >= 0.0 && value <= 1000.0)) {
     return;  // an input has to end
   }
-  check(signorini_solver_set_number(s.solver, name, value));
-  check(signorini_contact_solver_set_number(s.contact_solver, name, value));
+  if (taken(signorini_solver_set_number(s.solver, name, value)) &&
+      std::string_view(name) == "tolerance") {
+    s.tolerance = value;
+  }
+  if (taken(signorini_contact_solver_set_number(s.contact_solver, name, value))) {
+    note_setting(name, value, s.stated_contacts);
+  }
   if (std::strcmp(name, "no such thing") == 0) {  // so that other kept inputs mean what they meant
     set_dial(bytes, s);
   }
 }
 
+using Bodies = std::array<signorini_body, 8>;
+using Contacts = std::array<signorini_contact, 8>;
+
+/// Of any numbers, some that are taken: else few scenes of several bodies are.
+void make_plausible(std::int64_t body_count, Bodies& bodies, Contacts& contacts) {
+  const auto part = [](double number) {
+    return std::isfinite(number) ? number - std::trunc(number) : 0.5;
+  };
+  const auto positive = [](double number) {
+    return std::isfinite(number) ? 0.0625 + std::abs(number) : 1.0;
+  };
+  for (signorini_body& body : bodies) {
+    body.kind %= SIGNORINI_FIXED + 1;
+    body.mass = positive(body.mass);
+    double square = 1.0;
+    for (int k = 0; k < 3; ++k) {
+      body.inertia[4 * k] = positive(body.inertia[0]);
+      body.angular_velocity[k] = body.linear_velocity[(k + 1) % 3];
+      body.orientation[k + 1] = part(body.position[k]);
+      square += body.orientation[k + 1] * body.orientation[k + 1];
+    }
+    body.orientation[0] = 1.0;
+    for (double& number : body.orientation) {
+      number /= std::sqrt(square);
+    }
+  }
+  const auto count = static_cast<int>(std::clamp<std::int64_t>(body_count, 2, 8));
+  for (signorini_contact& contact : contacts) {
+    contact.body_a = (contact.body_a + 1) % count;
+    contact.body_b = (contact.body_a + 1 + (contact.body_b + 1) % (count - 1)) % count;
+    double square = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      contact.normal[k] = contact.normal[k] > 0.0 ? 1.0 : part(contact.point_a[k]);
+      square += contact.normal[k] * contact.normal[k];
+    }
+    for (int k = 0; k < 3 && square > 0.0; ++k) {
+      contact.normal[k] /= std::sqrt(square);
+      contact.point_b[k] = contact.point_a[k] - contact.gap * contact.normal[k];
+    }
+    if (contact.feature_id % 4 == 3) {  // as a host that keeps its contacts for a while
+      contact.point_b[contact.feature_id % 3] += 0.0625;
+    }
+    contact.friction = std::abs(contact.friction);
+    contact.restitution = std::min(std::abs(contact.restitution), 1.0);
+  }
+}
+
 void solve_contacts(ByteReader& bytes, Session& s) {
-  std::array<signorini_body, 8> bodies{};
+  Bodies bodies{};
   for (signorini_body& body : bodies) {
     body.kind = bytes.below(4);
     body.mass = bytes.number();
@@ -163,7 +313,7 @@ void solve_contacts(ByteReader& bytes, Session& s) {
     }
     body.orientation[0] = bytes.byte() == 255 ? bytes.number() : 1.0;
   }
-  std::array<signorini_contact, 8> contacts{};
+  Contacts contacts{};
   for (signorini_contact& contact : contacts) {
     contact.body_a = bytes.below(9) - 1;
     contact.body_b = bytes.below(9) - 1;
@@ -179,9 +329,13 @@ void solve_contacts(ByteReader& bytes, Session& s) {
   }
   const std::int64_t body_count = bytes.count();
   const std::int64_t contact_count = bytes.count();
-  const signorini_error error = signorini_contact_solver_solve(
-      s.contact_solver, bytes.byte() == 255 ? bytes.number() : 0.01, body_count, bodies.data(),
-      contact_count, contacts.data(), s.contact_result);
+  const double step = bytes.byte() == 255 ? bytes.number() : 0.01;
+  if (bytes.below(2) == 1) {
+    make_plausible(body_count, bodies, contacts);
+  }
+  const signorini_error error =
+      signorini_contact_solver_solve(s.contact_solver, step, body_count, bodies.data(),
+                                     contact_count, contacts.data(), s.contact_result);
   check(error);
   if (error == SIGNORINI_OK) {
     require(signorini_contact_result_body_count(s.contact_result) == body_count &&
@@ -190,6 +344,12 @@ void solve_contacts(ByteReader& bytes, Session& s) {
     const std::string accuracy = signorini_contact_result_accuracy(s.contact_result);
     require(!accuracy.empty() || signorini_contact_result_work(s.contact_result) == 0.0,
             "work is counted with the dial");
+    StatedContacts stated = s.stated_contacts;
+    stated.bodies = std::span(bodies).first(body_count);
+    stated.contacts = std::span(contacts).first(contact_count);
+    stated.step = step;
+    stated.friction_model = accuracy.empty() ? stated.friction_model : SIGNORINI_CONE;
+    stated.judge(s.contact_result);
   }
 }
 

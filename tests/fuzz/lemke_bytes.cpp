@@ -1,9 +1,12 @@
+#ifdef SIGNORINI_HAS_GMP
+#include <signorini/lcp/exact_solution.h>
+#endif
 #include <signorini/lcp/lemke.h>
 
 #include "byte_reader.h"
 #include "lcp_bytes.h"
+#include "plain_problem.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -45,28 +48,34 @@ lcp::Problem read_problem(ByteReader& bytes) {
   return problem;
 }
 
-/// max |z - clamp(z - w)| / (1 + |q|), computed apart from the certificate, in long double.
-long double natural_residual(const lcp::Problem& problem, const lcp::Vector& z) {
+/// The problem apart from the library, dense.
+PlainProblem plain(const lcp::Problem& problem) {
   const auto& M = std::get<lcp::Matrix>(problem.M);
-  long double worst = 0.0L;
-  for (lcp::Index i = 0; i < z.size(); ++i) {
-    long double w = problem.q[i];
-    for (lcp::Index j = 0; j < z.size(); ++j) {
-      w += static_cast<long double>(M(i, j)) * z[j];
+  PlainProblem stated(static_cast<int>(problem.size()));
+  for (int i = 0; i < stated.n; ++i) {
+    for (int j = 0; j < stated.n; ++j) {
+      stated.M[i * stated.n + j] = M(i, j);
+      stated.size[i * stated.n + j] = std::abs(M(i, j));
     }
-    long double lower = problem.lower.size() > 0 ? problem.lower[i] : 0.0;
-    long double upper = problem.upper.size() > 0 ? problem.upper[i] : kInfinity;
-    for (const lcp::CoupledLimit& limit : problem.limits) {
-      if (limit.row == i) {
-        upper = limit.coefficient * std::max(0.0L, static_cast<long double>(z[limit.normal_row]));
-        lower = -upper;
-      }
+    stated.q[i] = problem.q[i];
+    stated.q_size[i] = std::abs(problem.q[i]);
+    if (problem.has_bounds()) {
+      stated.lower[i] = problem.lower[i];
+      stated.upper[i] = problem.upper[i];
     }
-    const long double stays = std::clamp(z[i] - w, lower, upper);
-    worst = std::max(worst, std::abs(z[i] - stays));
   }
-  const double q = z.size() == 0 ? 0.0 : problem.q.lpNorm<Eigen::Infinity>();
-  return worst / (1.0L + q);
+  for (const lcp::CoupledLimit& limit : problem.limits) {
+    stated.limits.push_back({limit.row, limit.normal_row, limit.coefficient});
+  }
+  return stated;
+}
+
+/// What is said to have no solution has none in rational numbers, as far as some pivots find.
+void judge_infeasible([[maybe_unused]] const lcp::Problem& problem) {
+#ifdef SIGNORINI_HAS_GMP
+  require(lcp::solve_exactly(problem, 200).ending != lcp::ExactEnding::kSolution,
+          "what has a solution is not infeasible");
+#endif
 }
 
 }  // namespace
@@ -86,16 +95,18 @@ void judge_lemke_bytes(const std::uint8_t* data, std::size_t size) {
     require(!lcp::find_bad_value(problem).empty(), "invalid input names a value");
     return;
   }
-  require(result.z.allFinite(), "z is finite");
-  const long double residual = natural_residual(problem, result.z);
-  if (result.status == lcp::Status::kSolved) {
-    require(residual <= 1.001e-8L + 1e-3L * result.certificate.natural_floor,
-            "a solved problem has a small residual");
-  }
+  const PlainProblem stated = plain(problem);
+  stated.judge(result.z.data(), {.natural_residual = result.certificate.natural_residual,
+                                 .unit_free_residual = result.certificate.unit_free_residual,
+                                 .is_solved = result.status == lcp::Status::kSolved,
+                                 .is_to_rounding = result.status == lcp::Status::kSolvedToRounding,
+                                 .tolerance = lcp::SolverSettings{}.tolerance});
   if (result.status == lcp::Status::kInfeasible || result.status == lcp::Status::kNoSolutionBelow) {
     require(result.ray.size() == problem.size(), "a proof comes with its ray");
-    require(!(residual == 0.0L && result.status == lcp::Status::kInfeasible),
-            "what has a solution is not infeasible");
+    stated.judge_ray(result.ray.data(), result.ray_bound);
+  }
+  if (result.status == lcp::Status::kInfeasible) {
+    judge_infeasible(problem);
   }
 }
 
