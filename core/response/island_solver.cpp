@@ -25,7 +25,7 @@ constexpr double kLeastAfterCorrection = 1e-10;
 constexpr double kRowsOfAUnit = 1000.0;
 // However much a budget allows: a solver that has not ended by then does not.
 constexpr double kMostIterations = 1e4;
-constexpr double kLeastSeconds = 1e-9;   // a solver's limit is > 0
+constexpr double kLeastSeconds = 1e-9;  // a solver's limit is > 0
 
 double largest_q(const lcp::Problem& problem) {
   return problem.size() > 0 ? problem.q.cwiseAbs().maxCoeff() : 0.0;

@@ -128,14 +128,20 @@ FixedAnswers sweeps_on_threads(int threads) {
 
 // ---- core
 
-FixedAnswers impact_answers(ImpactLaw law) {
-  FixedAnswers answers{.part = "impact " + std::string(to_string(law)), .bound = kOfOneAnswer};
+/// @param mu of every contact; 0: an impact without friction
+FixedAnswers impact_answers(ImpactLaw law, double mu) {
+  FixedAnswers answers{
+      .part = "impact " + std::string(to_string(law)) + (mu > 0.0 ? ", friction" : ""),
+      .bound = kOfOneAnswer};
   std::mt19937_64 random(7);
   ImpactReport report;
   for (int k = 0; k < 10; ++k) {
     scenes::Scene scene = scenes::random_scene(random, 4, 6);
-    resolve_impact(scene.bodies, scene.contacts, {.law = law, .max_passes = 200}, scene.state,
-                   report);
+    for (Contact& contact : scene.contacts) {
+      contact.material.friction = mu;
+    }
+    resolve_impact(scene.bodies, scene.contacts,
+                   {.law = law, .friction = mu > 0.0, .max_passes = 200}, scene.state, report);
     answers.choices.push_back(static_cast<int>(report.status));
     add(report.impulses, answers.left_open);
     add(scene.state, answers.numbers);
@@ -201,18 +207,7 @@ FixedAnswers step_answers(const Accuracy& accuracy, int threads) {
   return answers;
 }
 
-/// Balls and a box that bounce and come to rest.
-FixedAnswers event_answers() {
-  FixedAnswers answers{.part = "events", .bound = kOfASecond};
-  Yard yard({.friction = 0.0, .restitution = 0.5});
-  yard.add(scenes::ball(), collision::Sphere{0.5}, Vec3(0.0, 0.0, 1.5));
-  yard.add(scenes::ball(2.0), collision::Sphere{0.5}, Vec3(0.1, 0.0, 2.7));
-  yard.add(scenes::box(1.0, Vec3::Ones()), collision::Box{Vec3::Constant(0.5)},
-           Vec3(3.0, 0.0, 0.9));
-  collision::CollisionWorld world = yard.world();
-  EventStepper stepper(yard.scene.bodies, world, {});
-  EventReport report;
-  stepper.advance(yard.scene.state, 1.0, report);
+void add(const EventReport& report, FixedAnswers& answers) {
   answers.choices.push_back(static_cast<int>(report.status));
   for (const Event& event : report.events) {
     answers.choices.push_back(static_cast<int>(event.kind));
@@ -221,8 +216,40 @@ FixedAnswers event_answers() {
     answers.numbers.push_back(event.time);
     answers.numbers.push_back(event.speed);
   }
+}
+
+/// A second of the event-driven stepper.
+FixedAnswers event_answers(const std::string& part, Yard& yard) {
+  FixedAnswers answers{.part = part, .bound = kOfASecond};
+  collision::CollisionWorld world = yard.world();
+  EventStepper stepper(yard.scene.bodies, world, {});
+  EventReport report;
+  stepper.advance(yard.scene.state, 1.0, report);
+  add(report, answers);
   add(yard.scene.state, answers.numbers);
   return answers;
+}
+
+/// Balls and a box that bounce and come to rest.
+FixedAnswers event_answers() {
+  Yard yard({.friction = 0.0, .restitution = 0.5});
+  yard.add(scenes::ball(), collision::Sphere{0.5}, Vec3(0.0, 0.0, 1.5));
+  yard.add(scenes::ball(2.0), collision::Sphere{0.5}, Vec3(0.1, 0.0, 2.7));
+  yard.add(scenes::box(1.0, Vec3::Ones()), collision::Box{Vec3::Constant(0.5)},
+           Vec3(3.0, 0.0, 0.9));
+  return event_answers("events", yard);
+}
+
+/// A ball that slips and then rolls, one that lands spinning, and a box that slides to rest.
+FixedAnswers event_friction_answers() {
+  Yard yard({.friction = 0.3, .restitution = 0.5});
+  yard.add(scenes::ball(), collision::Sphere{0.5}, Vec3(0.0, 0.0, 0.5),
+           {Vec3(1.0, 0.2, 0.0), Vec3::Zero()});
+  yard.add(scenes::ball(2.0), collision::Sphere{0.5}, Vec3(0.0, 4.0, 1.2),
+           {Vec3(0.5, 0.0, 0.0), Vec3(0.0, 6.0, 1.0)});
+  yard.add(scenes::box(1.0, Vec3::Ones()), collision::Box{Vec3::Constant(0.5)},
+           Vec3(0.0, -4.0, 0.5), {Vec3(1.0, 0.5, 0.0), Vec3::Zero()});
+  return event_answers("events, friction", yard);
 }
 
 // ---- collision
@@ -282,13 +309,17 @@ std::vector<FixedAnswers> fixed_answers(int threads) {
   for (const ImpactLaw law :
        {ImpactLaw::kSequentialOnce, ImpactLaw::kSequentialRepeated, ImpactLaw::kNewton,
         ImpactLaw::kNotes, ImpactLaw::kPoisson, ImpactLaw::kReflections}) {
-    all.push_back(impact_answers(law));
+    all.push_back(impact_answers(law, 0.0));
+  }
+  for (const ImpactLaw law : {ImpactLaw::kNewton, ImpactLaw::kReflections}) {
+    all.push_back(impact_answers(law, 0.4));
   }
   for (const Accuracy& accuracy :
        {Accuracy::preview(), Accuracy::game(), Accuracy::engineering(), Accuracy::reference()}) {
     all.push_back(step_answers(accuracy, threads));
   }
   all.push_back(event_answers());
+  all.push_back(event_friction_answers());
   all.push_back(contact_answers());
   all.push_back(contact_time_answers());
   return all;

@@ -19,7 +19,8 @@ struct FixedAnswers {
   std::vector<double> left_open = {};
 };
 
-/// Every solver, impact law and dial position, the event-driven stepper and collision detection.
+/// Every solver, impact law (with friction those that take it) and dial position, the event-driven
+/// stepper with and without friction, and collision detection.
 /// Time steps and sweeps take `threads` threads.
 [[nodiscard]] std::vector<FixedAnswers> fixed_answers(int threads);
 
