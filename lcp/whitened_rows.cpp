@@ -1,6 +1,7 @@
 #include <signorini/lcp/whitened_rows.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -41,28 +42,112 @@ inline void add(double factor, const double* a, double* b, int count) {
   }
 }
 
-/// out(r, c) += factor g1[r] g2[c] for r >= c or for all r; column c of out starts at starts[c].
+/// `count` rows, one after the other, of two parts of them.
+struct Rows {
+  int count;
+  int width;
+  const double* one;    // a part of the first row
+  const double* other;  // another, or the same
+};
+
+/// out(r, c) += sum over the rows of d[row] one[r] other[c], for r >= c or for all r; column c of
+/// out starts at starts[c].
 template <bool kLower>
-inline void add_outer(double factor, const double* g1, int rows, const double* g2, int columns,
-                      double* out, const int* starts) {
-  for (int c = 0; c < columns; ++c) {
-    const double value = factor * g2[c];
-    double* column = out + starts[c];
-    for (int r = kLower ? c : 0; r < rows; ++r) {
-      column[r] += value * g1[r];
+inline void add_outer(const Rows& rows, const double* d, int size, int columns, double* out,
+                      const int* starts) {
+  for (int i = 0; i < rows.count; ++i) {
+    const double* one = rows.one + i * rows.width;
+    const double* other = rows.other + i * rows.width;
+    for (int c = 0; c < columns; ++c) {
+      const double value = d[i] * other[c];
+      double* column = out + starts[c];
+      for (int r = kLower ? c : 0; r < size; ++r) {
+        column[r] += value * one[r];
+      }
+    }
+  }
+}
+
+/// The same of kSize x kSize: out is read and written once.
+template <int kSize, bool kLower>
+inline void add_outer_square(const Rows& rows, const double* d, double* out, const int* starts) {
+  if (rows.count == 1) {
+    add_outer<kLower>(rows, d, kSize, kSize, out, starts);
+    return;
+  }
+  double block[kSize * kSize];
+  for (int c = 0; c < kSize; ++c) {
+    for (int r = kLower ? c : 0; r < kSize; ++r) {
+      block[c * kSize + r] = out[starts[c] + r];
+    }
+  }
+  for (int i = 0; i < rows.count; ++i) {
+    const double* one = rows.one + i * rows.width;
+    const double* other = rows.other + i * rows.width;
+    for (int c = 0; c < kSize; ++c) {
+      const double value = d[i] * other[c];
+      for (int r = kLower ? c : 0; r < kSize; ++r) {
+        block[c * kSize + r] += value * one[r];
+      }
+    }
+  }
+  for (int c = 0; c < kSize; ++c) {
+    for (int r = kLower ? c : 0; r < kSize; ++r) {
+      out[starts[c] + r] = block[c * kSize + r];
     }
   }
 }
 
 template <bool kLower>
-inline void add_outer_fast(double factor, const double* g1, int rows, const double* g2, int columns,
-                           double* out, const int* starts) {
-  if (rows == kThree && columns == kThree) {
-    add_outer<kLower>(factor, g1, kThree, g2, kThree, out, starts);
-  } else if (rows == kFree && columns == kFree) {
-    add_outer<kLower>(factor, g1, kFree, g2, kFree, out, starts);
+inline void add_outer_fast(const Rows& rows, const double* d, int size, int columns, double* out,
+                           const int* starts) {
+  if (size == kThree && columns == kThree) {
+    add_outer_square<kThree, kLower>(rows, d, out, starts);
+  } else if (size == kFree && columns == kFree) {
+    add_outer_square<kFree, kLower>(rows, d, out, starts);
   } else {
-    add_outer<kLower>(factor, g1, rows, g2, columns, out, starts);
+    add_outer<kLower>(rows, d, size, columns, out, starts);
+  }
+}
+
+/// u += G^T x of rows with kCount parts of kSize numbers, each read and written once.
+template <int kSize, int kCount>
+inline void add_transpose(const double* row, int rows, const double* x,
+                          const std::array<double*, 2>& u) {
+  if (rows == 1) {
+    for (int k = 0; k < kCount; ++k) {
+      add(x[0], row + k * kSize, u[k], kSize);
+    }
+    return;
+  }
+  double sum[kCount * kSize];
+  for (int k = 0; k < kCount; ++k) {
+    std::copy_n(u[k], kSize, sum + k * kSize);
+  }
+  for (int i = 0; i < rows; ++i, row += kCount * kSize) {
+    for (int k = 0; k < kCount * kSize; ++k) {
+      sum[k] += x[i] * row[k];
+    }
+  }
+  for (int k = 0; k < kCount; ++k) {
+    std::copy_n(sum + k * kSize, kSize, u[k]);
+  }
+}
+
+/// y = G u of such rows.
+template <int kSize, int kCount>
+inline void multiply(const double* row, int rows, const std::array<const double*, 2>& u,
+                     double* y) {
+  double v[kCount * kSize];
+  for (int k = 0; k < kCount; ++k) {
+    std::copy_n(u[k], kSize, v + k * kSize);
+  }
+  for (int i = 0; i < rows; ++i) {
+    double sum = 0.0;
+    for (int k = 0; k < kCount; ++k, row += kSize) {
+      sum += dot<kSize>(row, v + k * kSize);
+    }
+    y[i] = sum;
   }
 }
 
@@ -110,6 +195,7 @@ void WhitenedRows::set(const FactoredMatrix& A, std::span<const int> group_start
   whiten(A);
   scale_rows(A);
   compress(A.mass);
+  find_bundles();
   set_pattern(A.mass.block_count());
 }
 
@@ -307,6 +393,34 @@ void WhitenedRows::compress(const BlockMass& mass) {
   groups_.back().values = static_cast<int>(out - values_.data());
 }
 
+/// Groups that follow each other with the same bodies are a bundle: their rows have one layout.
+void WhitenedRows::find_bundles() {
+  const auto same_bodies = [this](int g, int h) {
+    const auto first = entries_.begin();
+    return std::equal(first + groups_[g].entry, first + groups_[g + 1].entry,
+                      first + groups_[h].entry, first + groups_[h + 1].entry,
+                      [](const Entry& a, const Entry& b) { return a.body == b.body; });
+  };
+  bundles_.clear();
+  for (int g = 0; g < groups(); ++g) {
+    if (g > 0 && same_bodies(g - 1, g)) {
+      ++bundles_.back().groups;
+      bundles_.back().rows += group_rows(g);
+      continue;
+    }
+    Bundle bundle{g, 1, groups_[g].row, group_rows(g), groups_[g].values, groups_[g].width, 0,
+                  0, {}};
+    const std::span<const Entry> parts = entries_of(g);
+    const int size = parts.empty() ? 0 : parts.front().dimension;
+    if ((size == kThree || size == kFree) && parts.size() <= 2 && parts.back().dimension == size) {
+      bundle.parts = static_cast<int>(parts.size());
+      bundle.size = size;
+      bundle.offset = {parts.front().offset, parts.back().offset};
+    }
+    bundles_.push_back(bundle);
+  }
+}
+
 void WhitenedRows::set_pattern(int bodies) {
   // Every pair of entries of every group, then sorted by the pair's smaller body.
   pair_column_.clear();
@@ -391,20 +505,24 @@ void WhitenedRows::set_pattern(int bodies) {
 
 void WhitenedRows::transpose_times(const Vector& x, Vector& u) const {
   u.setZero(degrees_of_freedom_);
-  for (int g = 0; g < groups(); ++g) {
-    const double* row = values_.data() + groups_[g].values;
-    for (int i = groups_[g].row; i < groups_[g + 1].row; ++i) {
-      for (int e = groups_[g].entry; e < groups_[g + 1].entry; ++e) {
-        double* target = u.data() + entries_[e].offset;
-        const int d = entries_[e].dimension;
-        if (d == kThree) {
-          add(x[i], row, target, kThree);
-        } else if (d == kFree) {
-          add(x[i], row, target, kFree);
-        } else {
-          add(x[i], row, target, d);
+  for (const Bundle& bundle : bundles_) {
+    const double* row = values_.data() + bundle.values;
+    const double* of_rows = x.data() + bundle.row;
+    const std::array<double*, 2> to = {u.data() + bundle.offset[0], u.data() + bundle.offset[1]};
+    if (bundle.size == kThree && bundle.parts == 2) {
+      add_transpose<kThree, 2>(row, bundle.rows, of_rows, to);
+    } else if (bundle.size == kFree && bundle.parts == 2) {
+      add_transpose<kFree, 2>(row, bundle.rows, of_rows, to);
+    } else if (bundle.size == kThree) {
+      add_transpose<kThree, 1>(row, bundle.rows, of_rows, to);
+    } else if (bundle.size == kFree) {
+      add_transpose<kFree, 1>(row, bundle.rows, of_rows, to);
+    } else {
+      for (int i = 0; i < bundle.rows; ++i) {
+        for (const Entry& part : entries_of(bundle.group)) {
+          add(of_rows[i], row, u.data() + part.offset, part.dimension);
+          row += part.dimension;
         }
-        row += d;
       }
     }
   }
@@ -412,102 +530,98 @@ void WhitenedRows::transpose_times(const Vector& x, Vector& u) const {
 
 void WhitenedRows::times(const Vector& u, Vector& y) const {
   y.resize(rows());
-  for (int g = 0; g < groups(); ++g) {
-    const double* row = values_.data() + groups_[g].values;
-    for (int i = groups_[g].row; i < groups_[g + 1].row; ++i) {
-      double sum = 0.0;
-      for (int e = groups_[g].entry; e < groups_[g + 1].entry; ++e) {
-        const double* body = u.data() + entries_[e].offset;
-        const int d = entries_[e].dimension;
-        sum += d == kThree  ? dot<kThree>(row, body)
-               : d == kFree ? dot<kFree>(row, body)
-                            : dot(row, body, d);
-        row += d;
+  for (const Bundle& bundle : bundles_) {
+    const double* row = values_.data() + bundle.values;
+    double* of_rows = y.data() + bundle.row;
+    const std::array<const double*, 2> from = {u.data() + bundle.offset[0],
+                                               u.data() + bundle.offset[1]};
+    if (bundle.size == kThree && bundle.parts == 2) {
+      multiply<kThree, 2>(row, bundle.rows, from, of_rows);
+    } else if (bundle.size == kFree && bundle.parts == 2) {
+      multiply<kFree, 2>(row, bundle.rows, from, of_rows);
+    } else if (bundle.size == kThree) {
+      multiply<kThree, 1>(row, bundle.rows, from, of_rows);
+    } else if (bundle.size == kFree) {
+      multiply<kFree, 1>(row, bundle.rows, from, of_rows);
+    } else {
+      for (int i = 0; i < bundle.rows; ++i) {
+        double sum = 0.0;
+        for (const Entry& part : entries_of(bundle.group)) {
+          sum += dot(row, u.data() + part.offset, part.dimension);
+          row += part.dimension;
+        }
+        of_rows[i] = sum;
       }
-      y[i] = sum;
     }
   }
 }
 
-/// I plus what add_group(group, out, next pair of entries) adds for every group.
-template <typename AddGroup>
-const SparseMatrix& WhitenedRows::assemble(AddGroup add_group) {
+/// I plus what add_bundle(bundle, out, pairs of its first group) adds for every bundle.
+template <typename AddBundle>
+const SparseMatrix& WhitenedRows::assemble(AddBundle add_bundle) {
   double* out = lower_.valuePtr();
   std::fill(out, out + lower_.nonZeros(), 0.0);
   for (const int position : diagonal_position_) {
     out[position] = 1.0;
   }
   const int* pair = pair_of_entries_.data();
-  for (int g = 0; g < groups(); ++g) {
-    const int entries = groups_[g + 1].entry - groups_[g].entry;
-    add_group(g, out, pair);
-    pair += entries * (entries + 1) / 2;
+  for (const Bundle& bundle : bundles_) {
+    add_bundle(bundle, out, pair);
+    const int entries = static_cast<int>(entries_of(bundle.group).size());
+    pair += bundle.groups * (entries * (entries + 1) / 2);
   }
   return lower_;
 }
 
-const SparseMatrix& WhitenedRows::body_space_matrix(const Vector& d) {
-  return assemble([this, &d](int g, double* out, const int* first_pair) {
-    const double* row = values_.data() + groups_[g].values;
-    for (int i = groups_[g].row; i < groups_[g + 1].row; ++i, row += groups_[g].width) {
-      if (d[i] == 0.0) {
+/// Adds the sum over a bundle's rows of d[row] left(row)^T right(row) where it belongs.
+void WhitenedRows::add_products(const Bundle& bundle, const double* left, const double* right,
+                                const double* d, double* out, const int* pair) const {
+  const std::span<const Entry> parts = entries_of(bundle.group);
+  for (const Entry& one : parts) {
+    for (const Entry& other : parts) {
+      if (one.body < other.body) {
         continue;
       }
-      const int* pair = first_pair;
-      for (int e1 = groups_[g].entry; e1 < groups_[g + 1].entry; ++e1) {
-        for (int e2 = groups_[g].entry; e2 < groups_[g + 1].entry; ++e2) {
-          const Entry& one = entries_[e1];
-          const Entry& other = entries_[e2];
-          if (one.body < other.body) {
-            continue;
-          }
-          const int* starts = column_starts_.data() + first_column_start_[*pair++];
-          const double* g1 = row + one.column;
-          const double* g2 = row + other.column;
-          if (e1 == e2) {
-            add_outer_fast<true>(d[i], g1, one.dimension, g2, other.dimension, out, starts);
-          } else {
-            add_outer_fast<false>(d[i], g1, one.dimension, g2, other.dimension, out, starts);
-          }
-        }
+      const int* starts = column_starts_.data() + first_column_start_[*pair++];
+      const Rows rows = {bundle.rows, bundle.width, left + one.column, right + other.column};
+      if (&one == &other) {
+        add_outer_fast<true>(rows, d, one.dimension, other.dimension, out, starts);
+      } else {
+        add_outer_fast<false>(rows, d, one.dimension, other.dimension, out, starts);
       }
+    }
+  }
+}
+
+const SparseMatrix& WhitenedRows::body_space_matrix(const Vector& d) {
+  return assemble([this, &d](const Bundle& bundle, double* out, const int* pair) {
+    const auto of_rows = d.segment(bundle.row, bundle.rows);
+    if (!of_rows.isZero(0.0)) {
+      const double* G = values_.data() + bundle.values;
+      add_products(bundle, G, G, of_rows.data(), out, pair);
     }
   });
 }
 
 const SparseMatrix& WhitenedRows::body_space_matrix(std::span<const double> blocks) {
   const double* D = blocks.data();
-  return assemble([this, &D](int g, double* out, const int* first_pair) {
-    const int size = group_rows(g);
-    const int width = groups_[g].width;
-    const double* G = values_.data() + groups_[g].values;
-    work_.assign(static_cast<std::size_t>(size) * width, 0.0);  // D G, row by row
-    for (int i = 0; i < size; ++i) {
-      for (int j = 0; j < size; ++j) {
-        add(D[j * size + i], G + j * width, work_.data() + i * width, width);
-      }
-    }
-    const int* pair = first_pair;
-    for (int e1 = groups_[g].entry; e1 < groups_[g + 1].entry; ++e1) {
-      for (int e2 = groups_[g].entry; e2 < groups_[g + 1].entry; ++e2) {
-        const Entry& one = entries_[e1];
-        const Entry& other = entries_[e2];
-        if (one.body < other.body) {
-          continue;
-        }
-        const int* starts = column_starts_.data() + first_column_start_[*pair++];
-        for (int i = 0; i < size; ++i) {
-          const double* g1 = work_.data() + i * width + one.column;
-          const double* g2 = G + i * width + other.column;
-          if (e1 == e2) {
-            add_outer_fast<true>(1.0, g1, one.dimension, g2, other.dimension, out, starts);
-          } else {
-            add_outer_fast<false>(1.0, g1, one.dimension, g2, other.dimension, out, starts);
-          }
+  return assemble([this, &D](const Bundle& bundle, double* out, const int* pair) {
+    const double* G = values_.data() + bundle.values;
+    work_.assign(static_cast<std::size_t>(bundle.rows) * bundle.width, 0.0);  // D G, row by row
+    const double* of_group = G;
+    double* DG = work_.data();
+    for (int g = bundle.group; g < bundle.group + bundle.groups; ++g) {
+      const int size = group_rows(g);
+      for (int i = 0; i < size; ++i, DG += bundle.width) {
+        for (int j = 0; j < size; ++j) {
+          add(D[j * size + i], of_group + j * bundle.width, DG, bundle.width);
         }
       }
+      of_group += size * bundle.width;
+      D += size * size;
     }
-    D += size * size;
+    ones_.resize(std::max<std::size_t>(ones_.size(), bundle.rows), 1.0);
+    add_products(bundle, work_.data(), G, ones_.data(), out, pair);
   });
 }
 

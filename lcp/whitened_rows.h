@@ -3,6 +3,7 @@
 #include <signorini/lcp/factored_matrix.h>
 #include <signorini/lcp/types.h>
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -56,8 +57,7 @@ class WhitenedRows {
   template <typename Visit>
   void visit_groups(Visit visit) const {
     for (int g = 0; g < groups(); ++g) {
-      visit(std::span(entries_).subspan(groups_[g].entry, groups_[g + 1].entry - groups_[g].entry),
-            values_.data() + groups_[g].values, groups_[g].width);
+      visit(entries_of(g), values_.data() + groups_[g].values, groups_[g].width);
     }
   }
   /// The lower triangle of I + G^T D G for a diagonal D; the pattern is the same at every call.
@@ -75,6 +75,18 @@ class WhitenedRows {
     int values;  // where the numbers of the first row start; rows follow each other
     int width;   // numbers a row
   };
+  /// Groups that follow each other with the same bodies.
+  struct Bundle {
+    int group;   // the first
+    int groups;  // how many
+    int row;     // the first
+    int rows;    // how many
+    int values;  // where the numbers of the first row start; all rows follow each other
+    int width;   // numbers a row
+    int parts;   // where a row is one or two parts of `size` numbers, and the compiler unrolls that
+    int size;    // else 0
+    std::array<int, 2> offset;  // of the parts in u
+  };
   void take_over(const FactoredMatrix& A, std::span<const int> group_start);
   void whiten(const FactoredMatrix& A);
   void find_roots(const BlockMass& mass);
@@ -82,16 +94,24 @@ class WhitenedRows {
   void compress(const BlockMass& mass);
   void extend_basis(int body, const double* row);
   void set_pattern(int bodies);
-  template <typename AddGroup>
-  const SparseMatrix& assemble(AddGroup add_group);
+  void find_bundles();
+  template <typename AddBundle>
+  const SparseMatrix& assemble(AddBundle add_bundle);
+  void add_products(const Bundle& bundle, const double* left, const double* right, const double* d,
+                    double* out, const int* pair) const;
 
   [[nodiscard]] int groups() const { return static_cast<int>(groups_.size()) - 1; }
   [[nodiscard]] int group_rows(int g) const { return groups_[g + 1].row - groups_[g].row; }
+  [[nodiscard]] std::span<const Entry> entries_of(int g) const {
+    return std::span(entries_).subspan(groups_[g].entry, groups_[g + 1].entry - groups_[g].entry);
+  }
 
   Index degrees_of_freedom_ = 0;
   std::vector<Group> groups_;  // and one behind the last
   std::vector<Entry> entries_;
   std::vector<double> values_;
+  std::vector<Bundle> bundles_;
+  std::vector<double> ones_;  // as many as a bundle has rows
   Vector scale_;
   Vector compliance_;
   std::vector<int> each_row_;  // group_start of groups of one row
