@@ -201,6 +201,7 @@ void BlockCholesky::lay_out_fronts() {
   }
   panels_.resize(panel + kPadding);
   work_.resize(block_of_.size() + kPadding);
+  inverse_.resize(block_of_.size());
   below_.resize(most_below + kPadding);
 }
 
@@ -376,6 +377,9 @@ bool BlockCholesky::factor_front(int s, const double* values) {
   }
   kernels_.subtract_product(update, front.ld_update, panel + front.columns, front.ld, below,
                             front.columns);
+  for (int c = 0; c < front.columns; ++c) {
+    inverse_[front.first + c] = 1.0 / panel[static_cast<std::ptrdiff_t>(c) * front.ld + c];
+  }
   if (front.moved_update != front.update && below > 0) {
     std::memmove(stack_.data() + front.moved_update, update, update_size * sizeof(double));
   }
@@ -403,7 +407,7 @@ void BlockCholesky::solve(Vector& x) {
       std::copy_n(work_.data() + run.to, run.length, below_.data() + run.from);
     }
     kernels_.forward(panels_.data() + front.panel, front.ld, front.rows, front.columns,
-                     work_.data() + front.first, below_.data());
+                     inverse_.data() + front.first, work_.data() + front.first, below_.data());
     for (int k = front.global_run; k < fronts_[s + 1].global_run; ++k) {
       const Run& run = global_runs_[k];
       std::copy_n(below_.data() + run.from, run.length, work_.data() + run.to);
@@ -416,7 +420,7 @@ void BlockCholesky::solve(Vector& x) {
       std::copy_n(work_.data() + run.to, run.length, below_.data() + run.from);
     }
     kernels_.backward(panels_.data() + front.panel, front.ld, front.rows, front.columns,
-                      work_.data() + front.first, below_.data());
+                      inverse_.data() + front.first, work_.data() + front.first, below_.data());
   }
   for (Index i = 0; i < x.size(); ++i) {
     x[i] = work_[scalar_[i]];
@@ -426,8 +430,8 @@ void BlockCholesky::solve(Vector& x) {
 SparseCholeskyCounts BlockCholesky::counts() const {
   SparseCholeskyCounts counts = counts_;
   const auto bytes = [](const auto& vector) { return vector.capacity() * sizeof(vector[0]); };
-  counts.bytes = bytes(panels_) + bytes(stack_) + bytes(work_) + bytes(below_) + bytes(scatter_) +
-                 bytes(fronts_) + bytes(global_runs_) + bytes(parent_runs_) +
+  counts.bytes = bytes(panels_) + bytes(stack_) + bytes(work_) + bytes(inverse_) + bytes(below_) +
+                 bytes(scatter_) + bytes(fronts_) + bytes(global_runs_) + bytes(parent_runs_) +
                  bytes(pattern_inner_) + bytes(pattern_outer_);
   return counts;
 }

@@ -79,6 +79,7 @@ class BlockCholesky final : public SparseCholesky {
   std::vector<Run> global_runs_;  // row below a front's columns -> all columns
   std::vector<Run> parent_runs_;  // row below a front's columns -> row of its parent
   std::vector<double> panels_, stack_, work_, below_;
+  std::vector<double> inverse_;  // of the diagonal of L
   SparseCholeskyCounts counts_;
 };
 

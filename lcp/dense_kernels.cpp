@@ -245,49 +245,70 @@ SIGNORINI_INLINE void subtract_times(const double* L, Stride ld, int rows, int c
   }
 }
 
+template <int kCount>
+struct VectorOf;
+template <>
+struct VectorOf<4> {
+  using Type = Four;
+};
+template <>
+struct VectorOf<2> {
+  using Type = Two;
+};
 template <typename V>
-SIGNORINI_INLINE double sum_of(V v) {
-  double sum = 0.0;
-  for (int i = 0; i < kLanes<V>; ++i) {
-    sum += v[i];
+using HalfOf = typename VectorOf<kLanes<V> / 2>::Type;
+
+template <typename V>
+SIGNORINI_INLINE double sum_of(const V& v) {
+  if constexpr (kLanes<V> == 2) {
+    return v[0] + v[1];
+  } else {
+    using Half = HalfOf<V>;
+    const Half* halves = reinterpret_cast<const Half*>(&v);
+    return sum_of<Half>(halves[0] + halves[1]);
   }
-  return sum;
 }
 
 /// x_c -= L(:, c) . y for kColumns columns.
 template <typename V, int kColumns>
 SIGNORINI_INLINE void subtract_dots(const double* L, Stride ld, int rows, const double* y,
                                     double* x) {
-  V sum[kColumns];
-#pragma GCC unroll 4
-  for (int c = 0; c < kColumns; ++c) {
-    sum[c] = V{};
-  }
   int i = 0;
-  for (; i + kLanes<V> <= rows; i += kLanes<V>) {
-    const V value = *reinterpret_cast<const V*>(y + i);
+  if (rows >= kLanes<V>) {
+    V sum[kColumns];
 #pragma GCC unroll 4
     for (int c = 0; c < kColumns; ++c) {
-      sum[c] += *reinterpret_cast<const V*>(L + c * ld + i) * value;
+      sum[c] = V{};
+    }
+    for (; i + kLanes<V> <= rows; i += kLanes<V>) {
+      const V value = *reinterpret_cast<const V*>(y + i);
+#pragma GCC unroll 4
+      for (int c = 0; c < kColumns; ++c) {
+        sum[c] += *reinterpret_cast<const V*>(L + c * ld + i) * value;
+      }
+    }
+#pragma GCC unroll 4
+    for (int c = 0; c < kColumns; ++c) {
+      x[c] -= sum_of<V>(sum[c]);
     }
   }
+  if constexpr (kLanes < V >> 2) {
+    subtract_dots<HalfOf<V>, kColumns>(L + i, ld, rows - i, y + i, x);
+  } else if (i < rows) {
 #pragma GCC unroll 4
-  for (int c = 0; c < kColumns; ++c) {
-    double rest = sum_of(sum[c]);
-    for (int k = i; k < rows; ++k) {
-      rest += L[c * ld + k] * y[k];
+    for (int c = 0; c < kColumns; ++c) {
+      x[c] -= L[c * ld + i] * y[i];
     }
-    x[c] -= rest;
   }
 }
 
 template <typename V>
 SIGNORINI_INLINE void forward_substitute(const double* panel, int ld, int rows, int columns,
-                                         double* top, double* below) {
+                                         const double* inverse, double* top, double* below) {
   const Stride stride = ld;
   for (int c = 0; c < columns; ++c) {
     const double* column = panel + c * stride;
-    top[c] /= column[c];
+    top[c] *= inverse[c];
     for (int r = c + 1; r < columns; ++r) {
       top[r] -= column[r] * top[c];
     }
@@ -297,7 +318,7 @@ SIGNORINI_INLINE void forward_substitute(const double* panel, int ld, int rows, 
 
 template <typename V>
 SIGNORINI_INLINE void back_substitute(const double* panel, int ld, int rows, int columns,
-                                      double* top, const double* below) {
+                                      const double* inverse, double* top, const double* below) {
   const Stride stride = ld;
   const double* L = panel + columns;
   int c = 0;
@@ -324,30 +345,30 @@ SIGNORINI_INLINE void back_substitute(const double* panel, int ld, int rows, int
       for (int r = c + 1; r < end; ++r) {
         value -= column[r] * top[r];
       }
-      top[c] = value / column[c];
+      top[c] = value * inverse[c];
     }
     end = first;
   }
 }
 
 // The four functions of a set, compiled for it. kVectors x kColumns tiles fill its registers.
-#define SIGNORINI_KERNELS(set, attribute, V, kVectors, kColumns)                                 \
-  attribute bool factor_##set(double* panel, int ld, int rows, int columns) {                    \
-    return factor_panel<V, kVectors, kColumns>(panel, ld, rows, columns);                        \
-  }                                                                                              \
-  attribute void subtract_product_##set(double* square, int ld_square, const double* below,      \
-                                        int ld, int size, int columns) {                         \
-    subtract_square<V, kVectors, kColumns>(square, ld_square, below, ld, size, columns);         \
-  }                                                                                              \
-  attribute void forward_##set(const double* panel, int ld, int rows, int columns, double* top,  \
-                               double* below) {                                                  \
-    forward_substitute<V>(panel, ld, rows, columns, top, below);                                 \
-  }                                                                                              \
-  attribute void backward_##set(const double* panel, int ld, int rows, int columns, double* top, \
-                                const double* below) {                                           \
-    back_substitute<V>(panel, ld, rows, columns, top, below);                                    \
-  }                                                                                              \
-  constexpr DenseKernels k_##set = {#set, factor_##set, subtract_product_##set, forward_##set,   \
+#define SIGNORINI_KERNELS(set, attribute, V, kVectors, kColumns)                               \
+  attribute bool factor_##set(double* panel, int ld, int rows, int columns) {                  \
+    return factor_panel<V, kVectors, kColumns>(panel, ld, rows, columns);                      \
+  }                                                                                            \
+  attribute void subtract_product_##set(double* square, int ld_square, const double* below,    \
+                                        int ld, int size, int columns) {                       \
+    subtract_square<V, kVectors, kColumns>(square, ld_square, below, ld, size, columns);       \
+  }                                                                                            \
+  attribute void forward_##set(const double* panel, int ld, int rows, int columns,             \
+                               const double* inverse, double* top, double* below) {            \
+    forward_substitute<V>(panel, ld, rows, columns, inverse, top, below);                      \
+  }                                                                                            \
+  attribute void backward_##set(const double* panel, int ld, int rows, int columns,            \
+                                const double* inverse, double* top, const double* below) {     \
+    back_substitute<V>(panel, ld, rows, columns, inverse, top, below);                         \
+  }                                                                                            \
+  constexpr DenseKernels k_##set = {#set, factor_##set, subtract_product_##set, forward_##set, \
                                     backward_##set};
 
 SIGNORINI_KERNELS(baseline, , Two, 2, 4)

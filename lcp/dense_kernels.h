@@ -23,11 +23,13 @@ struct DenseKernels {
   void (*subtract_product)(double* square, int ld_square, const double* below, int ld, int size,
                            int columns);
   /// Forward substitution with a panel: top <- L_11^-1 top, below <- below - L_21 top. `below`
-  /// needs kPadding numbers of memory behind it.
-  void (*forward)(const double* panel, int ld, int rows, int columns, double* top, double* below);
+  /// needs kPadding numbers of memory behind it. @param inverse 1 / the diagonal of L_11: each
+  /// number of a substitution waits for the one before, and would for a division
+  void (*forward)(const double* panel, int ld, int rows, int columns, const double* inverse,
+                  double* top, double* below);
   /// Back substitution: top <- L_11^-T (top - L_21^T below).
-  void (*backward)(const double* panel, int ld, int rows, int columns, double* top,
-                   const double* below);
+  void (*backward)(const double* panel, int ld, int rows, int columns, const double* inverse,
+                   double* top, const double* below);
 };
 
 /// The sets this machine can run, the fastest first. The choice changes rounding, not accuracy.

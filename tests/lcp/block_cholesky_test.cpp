@@ -68,7 +68,8 @@ TEST_P(EveryInstructionSet, PanelTimesItsTransposeAndTheRestGiveTheMatrix) {
       std::vector<double> x(b.begin(), b.end());
       x.resize(rows + DenseKernels::kPadding);
       std::vector<double> rest(x.begin() + columns, x.end());
-      kernels.forward(panel.data(), ld, rows, columns, x.data(), rest.data());
+      const Vector inverse = L.topRows(columns).diagonal().cwiseInverse();
+      kernels.forward(panel.data(), ld, rows, columns, inverse.data(), x.data(), rest.data());
       Vector wanted = b;
       const auto L11 = L.topRows(columns).triangularView<Eigen::Lower>();
       wanted.head(columns) = L11.solve(Vector(b.head(columns)));
@@ -78,7 +79,7 @@ TEST_P(EveryInstructionSet, PanelTimesItsTransposeAndTheRestGiveTheMatrix) {
       }
       Vector back = wanted.head(columns) - L.bottomRows(below).transpose() * wanted.tail(below);
       back = L.topRows(columns).transpose().triangularView<Eigen::Upper>().solve(back);
-      kernels.backward(panel.data(), ld, rows, columns, x.data(), rest.data());
+      kernels.backward(panel.data(), ld, rows, columns, inverse.data(), x.data(), rest.data());
       for (int i = 0; i < columns; ++i) {
         EXPECT_NEAR(x[i], back[i], 1e-10 * rows * (1.0 + back.cwiseAbs().maxCoeff()));
       }
