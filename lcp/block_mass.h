@@ -77,14 +77,18 @@ void BlockMass::apply_inverse(int block, const Scalar* x, Scalar* y) const {
   const auto [offset, d, start, is_factor] = blocks_[block];
   const double* v = values_.data() + start;
   if (!is_factor) {
-    for (int i = 0; i < d; ++i) {
-      y[i] = 0;
-    }
-    for (int j = 0; j < d; ++j) {
-      for (int i = 0; i < d; ++i) {
-        y[i] += v[j * d + i] * x[j];
+    constexpr int kRigidBody = 6;
+    const auto multiply = [v, x, y](int size) {  // unrolled where the size is known
+      for (int i = 0; i < size; ++i) {
+        y[i] = 0;
       }
-    }
+      for (int j = 0; j < size; ++j) {
+        for (int i = 0; i < size; ++i) {
+          y[i] += v[j * size + i] * x[j];
+        }
+      }
+    };
+    d == kRigidBody ? multiply(kRigidBody) : multiply(d);
     return;
   }
   for (int i = 0; i < d; ++i) {  // L y = x

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace signorini::lcp {
 namespace {
@@ -51,15 +52,18 @@ double ProximalNewton::line_search(const ScaledProblem& problem, const WhitenedR
       breaks_.emplace_back(t, -curvature);
     }
   }
-  std::sort(breaks_.begin(), breaks_.end());
+  // A heap: as a rule few of the breaks are before the minimum.
+  std::make_heap(breaks_.begin(), breaks_.end(), std::greater<>());
   double at = 0.0;
-  for (const auto& [t, change] : breaks_) {
+  for (auto end = breaks_.end(); end != breaks_.begin(); --end) {
+    const auto [t, change] = breaks_.front();
     if (derivative + slope * (t - at) >= 0.0) {
       break;
     }
     derivative += slope * (t - at);
     at = t;
     slope += change;
+    std::pop_heap(breaks_.begin(), end, std::greater<>());
   }
   return at - derivative / slope;
 }

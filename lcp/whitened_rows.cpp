@@ -153,7 +153,7 @@ inline void multiply(const double* row, int rows, const std::array<const double*
 
 /// The lower triangle of W (d x d, column-major) becomes F with W = F F^T; the upper one zero. A
 /// direction without inverse mass gets a zero column.
-void factor_in_place(double* W, int d) {
+inline void factor_in_place(double* W, int d) {
   double largest = 0.0;
   for (int k = 0; k < d; ++k) {
     largest = std::max(largest, W[k * d + k]);
@@ -249,17 +249,21 @@ void WhitenedRows::find_roots(const BlockMass& mass) {
     roots_.resize(root_start_.back());
     work_.assign(d, 0.0);
     double* W = roots_.data() + start;
-    for (int j = 0; j < d; ++j) {
-      work_[j] = 1.0;
-      mass.apply_inverse(k, work_.data(), W + j * d);
-      work_[j] = 0.0;
-    }
-    for (int j = 0; j < d; ++j) {
-      for (int i = j + 1; i < d; ++i) {
-        W[j * d + i] = 0.5 * (W[j * d + i] + W[i * d + j]);
+    if (mass.is_factor(k)) {
+      for (int j = 0; j < d; ++j) {
+        work_[j] = 1.0;
+        mass.apply_inverse(k, work_.data(), W + j * d);
+        work_[j] = 0.0;
       }
+      for (int j = 0; j < d; ++j) {
+        for (int i = j + 1; i < d; ++i) {
+          W[j * d + i] = 0.5 * (W[j * d + i] + W[i * d + j]);
+        }
+      }
+    } else {
+      std::copy_n(mass.stored(k).data(), d * d, W);
     }
-    factor_in_place(W, d);
+    d == kFree ? factor_in_place(W, kFree) : factor_in_place(W, d);
   }
 }
 
