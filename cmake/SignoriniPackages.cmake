@@ -1,18 +1,22 @@
-# Debian packages by CPack: libsignorini0, libsignorini-bullet0, libsignorini-dart0, libsignorini-dev,
-# signorini-tools. scripts/package builds them, from a build with -DBUILD_SHARED_LIBS=ON -DCMAKE_INSTALL_PREFIX=/usr.
+# Debian packages by CPack (scripts/package): from a build with -DBUILD_SHARED_LIBS=ON
+# -DCMAKE_INSTALL_PREFIX=/usr libsignorini0, libsignorini-bullet0, libsignorini-dart0, libsignorini-dev;
+# from one with static libraries signorini-tools, whose programs then need none of these.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME signorini)
 set(CPACK_PACKAGE_VENDOR "Signorini")
 set(CPACK_PACKAGE_CONTACT "Signorini <signorini@localhost>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
-set(CPACK_COMPONENTS_ALL libraries development tools)
+set(CPACK_COMPONENTS_ALL tools)
+if(BUILD_SHARED_LIBS)
+  set(CPACK_COMPONENTS_ALL libraries development)
+endif()
 set(suggested "libbullet-dev, libdart-dev")
-if(TARGET signorini_bullet OR TARGET signorini_bullet_float)
+if(BUILD_SHARED_LIBS AND (TARGET signorini_bullet OR TARGET signorini_bullet_float))
   list(APPEND CPACK_COMPONENTS_ALL bullet)
   string(PREPEND suggested "libsignorini-bullet${PROJECT_VERSION_MAJOR}, ")
 endif()
-if(TARGET signorini_dart)
+if(BUILD_SHARED_LIBS AND TARGET signorini_dart)
   list(APPEND CPACK_COMPONENTS_ALL dart)
   string(PREPEND suggested "libsignorini-dart${PROJECT_VERSION_MAJOR}, ")
 endif()
@@ -44,5 +48,4 @@ set(CPACK_COMPONENT_DEVELOPMENT_DEPENDS libraries)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME signorini-tools)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION science)
 set(CPACK_COMPONENT_TOOLS_DESCRIPTION "the programs")
-set(CPACK_COMPONENT_TOOLS_DEPENDS libraries)
 include(CPack)

@@ -1,5 +1,6 @@
 #include <signorini/lcp/shifted_system.h>
 #include <signorini/lcp/sparse_cholesky.h>
+#include <signorini/lcp/sparse_lu.h>
 
 #include <Eigen/LU>
 #include <Eigen/SparseLU>
@@ -97,6 +98,7 @@ class GivenMatrixSystem final : public ShiftedSystem {
       return dense_lu_.matrixLU().diagonal().cwiseAbs().minCoeff() > 0.0;
     }
     shift(whole_, e, proximal);
+    require_memory_of_lu(whole_.rows(), whole_.nonZeros());
     if (!lu_is_analysed_) {
       sparse_lu_.analyzePattern(whole_);
       lu_is_analysed_ = true;

@@ -8,6 +8,13 @@
 
 namespace signorini::lcp {
 
+/// Asks for what Eigen's SparseLU takes at first for an n x n matrix with so many entries (its
+/// memInit(), its copies of the matrix), and gives it back. Where memory ends within it Eigen 3.4
+/// writes through null and answers as if all were well; so it ends here. Not against what other
+/// threads take meanwhile, nor against fill far beyond the usual.
+/// @throws std::bad_alloc
+void require_memory_of_lu(Index n, Index entries);
+
 /// The sparse LU with partial pivoting of Eigen (MPL 2), for matrices that need not be symmetric.
 /// It allocates at every call; BackEndScope stands around it.
 class SparseLu {

@@ -5,10 +5,14 @@
 #include "tests/lcp/allocation_count.h"
 
 #include <array>
+#include <cstdint>
+#include <fstream>
 #include <functional>
 #include <gtest/gtest.h>
 #include <memory>
 #include <string>
+#include <sys/resource.h>
+#include <unistd.h>
 #include <vector>
 
 namespace {
@@ -138,6 +142,67 @@ TEST_F(OutOfMemory, EverySolverSaysSoAndSolvesTheNextTime) {
     signorini_solver_destroy(solver);
   }
   EXPECT_GT(tried, 10);
+}
+
+/// This process may take so many bytes more than it has, while it lives.
+class AddressSpace {
+ public:
+  explicit AddressSpace(std::uint64_t more) {
+    std::uint64_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    getrlimit(RLIMIT_AS, &before_);
+    rlimit small = before_;
+    small.rlim_cur = pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)) + more;
+    setrlimit(RLIMIT_AS, &small);
+  }
+  ~AddressSpace() { setrlimit(RLIMIT_AS, &before_); }
+  AddressSpace(const AddressSpace&) = delete;
+  AddressSpace& operator=(const AddressSpace&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+/// The sparse LU of the Newton methods takes tens of megabytes here.
+TEST_F(OutOfMemory, ASparseFactorisationThatDoesNotFitSaysSo) {
+  constexpr int kRows = 3000;
+  constexpr int kNear[] = {0, 1, 37, 311};  // not symmetric
+  std::vector<std::int32_t> start{0};
+  std::vector<std::int32_t> index;
+  std::vector<double> value;
+  const std::vector<double> q(kRows, -1.0);
+  for (int j = 0; j < kRows; ++j) {
+    for (const int near : kNear) {
+      if (j + near < kRows) {
+        index.push_back(j + near);
+        value.push_back(near == 0 ? 4.0 : -1.0);
+      }
+    }
+    start.push_back(static_cast<std::int32_t>(index.size()));
+  }
+  ASSERT_EQ(signorini_problem_set_sparse(problem_, kRows, SIGNORINI_COLUMN_MAJOR,
+                                         static_cast<std::int64_t>(index.size()), start.data(),
+                                         index.data(), value.data(), q.data()),
+            SIGNORINI_OK);
+  for (const char* name : {"alart-curnier", "interior-point"}) {
+    SCOPED_TRACE(name);
+    int failures = 0;
+    signorini_error error = SIGNORINI_OUT_OF_MEMORY;
+    for (std::uint64_t more = 0; error != SIGNORINI_OK && more < (1u << 30); more += 1u << 20) {
+      signorini_solver* solver = nullptr;
+      ASSERT_EQ(signorini_solver_create(name, &solver), SIGNORINI_OK);
+      {
+        const AddressSpace scarce(more);
+        error = signorini_solver_solve(solver, problem_, nullptr, result_);
+      }
+      signorini_solver_destroy(solver);
+      EXPECT_TRUE(error == SIGNORINI_OK || error == SIGNORINI_OUT_OF_MEMORY) << more;
+      failures += error == SIGNORINI_OUT_OF_MEMORY ? 1 : 0;
+    }
+    EXPECT_GT(failures, 0);
+    EXPECT_EQ(error, SIGNORINI_OK);
+    EXPECT_TRUE(signorini_is_solved(signorini_result_status(result_)));
+  }
 }
 
 TEST_F(OutOfMemory, ContactsAreSolvedTheNextTime) {

@@ -212,7 +212,7 @@ void solve(ByteReader& bytes, Session& s) {
 void set_dial(ByteReader& bytes, Session& s) {
   constexpr std::array kPositions = {"preview", "game", "engineering", "reference", "1e-6",
                                      "",        "x"};
-  constexpr std::array kResiduals = {1e-2, 1e-4, 1e-8, 1e-13, 1e-6, std::nan(""), std::nan("")};
+  const std::array kResiduals = {1e-2, 1e-4, 1e-8, 1e-13, 1e-6, std::nan(""), std::nan("")};
   const int number = bytes.below(static_cast<int>(kPositions.size()));
   if (taken(signorini_contact_solver_set_text(s.contact_solver, "accuracy", kPositions[number]))) {
     s.stated_contacts.residual = kResiduals[number];
