@@ -12,14 +12,14 @@ namespace {
 
 constexpr double kRough = 3e-3;   // m/s, see the table
 constexpr double kCasual = 3e-6;  // m/s
-// What steps_are_exact() aims at at least: a step or two more, while what a rougher answer leaves
-// sets a pile in motion, which costs many.
+// What solvers whose last steps square the residual aim at at least: a step or two more, while what
+// a rougher answer leaves sets a pile in motion, which costs many.
 constexpr double kExactAim = 1e-8;  // m/s
 // Tolerances are powers of ten, so that islands share solvers. The least is below what rounding
 // leaves of any problem: the answer is then solved to rounding, or not solved.
 constexpr double kLeastTolerance = 1e-20;
 constexpr double kMostTolerance = 0.1;
-// What the solvers are told of what is asked after a correction, and the least that comes of it.
+// What `sticking` is told of its aim after a correction, and the least that comes of it.
 constexpr double kAfterCorrection = 0.1;
 constexpr double kLeastAfterCorrection = 1e-10;
 constexpr double kRowsOfAUnit = 1000.0;
@@ -40,11 +40,6 @@ double tolerance_for(double residual, double q_inf) {
 
 bool sweeps(std::string_view name) {
   return name == "nsgs";
-}
-
-/// Solvers whose last steps square the residual.
-bool steps_are_exact(std::string_view name) {
-  return name == "sticking" || name == "cone-interior-point";
 }
 
 /// Work units of one iteration.
@@ -130,50 +125,60 @@ void IslandSolver::choose(const lcp::Problem& problem, bool is_warm, bool is_lim
   if (!problem.cones.empty() && residual >= kCasual) {
     const bool rough = residual >= kRough;
     if (is_warm) {
-      chain_.push_back({"sticking", "perhaps little slides", 6});
+      chain_.push_back({"sticking", "perhaps little slides", 3, true});
     } else {
-      chain_.push_back({"cone-interior-point", "perhaps little slides", 30});
+      chain_.push_back({"cone-interior-point", "perhaps little slides", 30, true});
     }
-    chain_.push_back({"nsgs", "little accuracy is asked", rough ? 50 : 200});
+    if (!is_limited) {
+      chain_.push_back({"alart-curnier", "an accurate step is the next one's start", 30, true});
+    }
+    chain_.push_back({"nsgs", "little accuracy is asked", rough ? 50 : 200, false});
   }
   if (!is_limited) {
-    chain_.push_back({"auto", "whatever it takes", -1});
+    const bool can_aim_lower = tolerance(problem) > kLeastAfterCorrection;
+    if (chain_.empty() && is_warm && after_correction_ && can_aim_lower) {
+      chain_.push_back({"sticking", "the step before was a correction", 25, true});
+    }
+    chain_.push_back({"auto", "whatever it takes", -1, false});
     return;
   }
   if (problem.cones.empty()) {
-    chain_.push_back({"interior-point", "no friction", -1});
+    chain_.push_back({"interior-point", "no friction", -1, false});
   } else if (residual < kCasual) {
-    chain_.push_back(
-        {is_warm ? "sticking" : "cone-interior-point", "perhaps little slides", is_warm ? 25 : 30});
+    chain_.push_back({is_warm ? "sticking" : "cone-interior-point", "perhaps little slides",
+                      is_warm ? 25 : 30, true});
   }
-  chain_.push_back({"alart-curnier", "the budget allows it", -1});
-  chain_.push_back({"nsgs", "what is left of the budget", -1});
+  chain_.push_back({"alart-curnier", "the budget allows it", -1, false});
+  chain_.push_back({"nsgs", "what is left of the budget", -1, false});
 }
 
 /// What a solver of the dial is told.
-double IslandSolver::aim(std::string_view name, const lcp::Problem& problem) const {
+double IslandSolver::aim(const Try& tried, const lcp::Problem& problem) const {
   const double asked = tolerance(problem);
   const double aimed =
-      steps_are_exact(name) ? std::min(asked, tolerance_for(kExactAim, largest_q(problem))) : asked;
-  return after_correction_ && !sweeps(name)
+      tried.is_fine ? std::min(asked, tolerance_for(kExactAim, largest_q(problem))) : asked;
+  return after_correction_ && tried.solver == std::string_view("sticking")
              ? std::min(aimed, std::max(kAfterCorrection * aimed, kLeastAfterCorrection))
              : aimed;
 }
 
-void IslandSolver::attempt(const lcp::Problem& problem, std::string_view name, int most,
-                           double seconds, const lcp::Vector* start, lcp::Result& result) {
+/// @return whether the aim is met; the status is by what is asked
+bool IslandSolver::attempt(const lcp::Problem& problem, const Try& tried, int most, double seconds,
+                           const lcp::Vector* start, lcp::Result& result) {
   if (std::isfinite(seconds)) {  // a solver's time is in its settings
     lcp::SolverSettings own = settings_.lcp;
-    own.tolerance = aim(name, problem);
+    own.tolerance = aim(tried, problem);
     own.max_iterations = most;
     own.time_limit = std::min(own.time_limit, std::max(seconds, kLeastSeconds));
-    lcp::make_solver(name, own)->solve(problem, result, start);
+    lcp::make_solver(tried.solver, own)->solve(problem, result, start);
   } else {
-    solver(name, aim(name, problem), most).solve(problem, result, start);
+    solver(tried.solver, aim(tried, problem), most).solve(problem, result, start);
   }
-  if (!lcp::is_solved(result.status)) {  // by the aim
-    result.status = lcp::judge(result.certificate, tolerance(problem), result.status);
+  if (lcp::is_solved(result.status)) {
+    return true;
   }
+  result.status = lcp::judge(result.certificate, tolerance(problem), result.status);
+  return false;
 }
 
 /// The start, or 0 where that is better: what a budget that pays for no solver gives.
@@ -203,7 +208,7 @@ void IslandSolver::solve_by_dial(const lcp::Problem& problem, const StepBudget& 
   const auto take = [&](const Try& tried, int most) {
     const bool first = attempts_.empty();
     lcp::Result& one = first ? result : another_;
-    attempt(problem, tried.solver, most, left(), start, one);
+    const bool aim_met = attempt(problem, tried, most, left(), start, one);
     island.work += spent(tried.solver, one);
     seconds += one.statistics.solve_seconds;
     if (one.attempts.empty()) {
@@ -211,15 +216,16 @@ void IslandSolver::solve_by_dial(const lcp::Problem& problem, const StepBudget& 
                            one.certificate.unit_free_residual, one.statistics, one.detail});
     }
     attempts_.insert(attempts_.end(), one.attempts.begin(), one.attempts.end());
-    const bool solved = lcp::is_solved(one.status);
-    if (!first && (solved || merit(one) < merit(result))) {
+    const bool first_solved = lcp::is_solved(one.status) && !lcp::is_solved(result.status);
+    if (!first && (first_solved || merit(one) < merit(result))) {
       std::swap(result, another_);
     }
-    return solved;
+    return aim_met;
   };
   lcp::start_result(problem.size(), result);
   choose(problem, is_warm, budget.is_limited());
-  for (const Try& next : chain_) {
+  for (std::size_t k = 0; k < chain_.size(); ++k) {
+    const Try& next = chain_[k];
     const double allowed =
         std::floor((budget.work - island.work) / unit_cost(next.solver, problem.size()) + 1e-9);
     if (!(allowed >= 1.0) || !(left() > 0.0)) {
@@ -229,10 +235,12 @@ void IslandSolver::solve_by_dial(const lcp::Problem& problem, const StepBudget& 
     const int most = !std::isfinite(allowed) ? next.most
                      : next.most < 0         ? static_cast<int>(std::min(allowed, kMostIterations))
                                      : static_cast<int>(std::min<double>(next.most, allowed));
-    if (!solver(next.solver, aim(next.solver, problem), most).refuses(problem).empty()) {
+    if (!solver(next.solver, aim(next, problem), most).refuses(problem).empty()) {
       continue;
     }
-    if (take(next, most)) {
+    const bool aim_met = take(next, most);
+    const bool may_do_better = !aim_met && k + 1 < chain_.size() && chain_[k + 1].is_fine;
+    if (lcp::is_solved(result.status) && !may_do_better) {
       break;
     }
     island.start = result.z;

@@ -52,16 +52,17 @@ struct IslandAnswer {
 /// dial (accuracy set) an island is tried in this order, until its residual is met; each starts
 /// from the best iterate so far:
 ///
-/// - residual >= 3e-6 (preview, game), friction: sticking (6 sets) where warm, else
-///   cone-interior-point (30 steps), both to 1e-8 m/s, judged by the residual; nsgs (preview: 50
-///   sweeps, else 200); auto
+/// - residual >= 3e-6 (preview, game), friction: sticking (3 sets) where warm, else
+///   cone-interior-point (30 steps), then alart-curnier (30 steps), all to 1e-8 m/s: their last
+///   steps square the residual, and what a rougher answer leaves comes back in the next step. Where
+///   none gets there the best is judged by the residual; nsgs (preview: 50 sweeps, else 200); auto
 /// - else, and without friction: auto
 ///
 /// What is at rest starts from its answer, and stays as it is while that is far below what is
 /// asked. A start that no longer is gets corrected, and the impulses of that step also stop what
 /// little moves: the next step must not start from them unasked, or it sets going as much the other
-/// way, and every second step is a correction. So after one the exact solvers and auto are told a
-/// tenth (down to 1e-10 of |q|), while the residual asked judges as ever.
+/// way, and every second step is a correction. So after one sticking is tried first and told a
+/// tenth of its aim (down to 1e-10 of |q|), while the residual asked judges as ever.
 ///
 /// With a budget auto, which knows none, gives way to interior-point (no friction), alart-curnier
 /// and nsgs. What the rest of the budget does not pay for is left out; where it pays for nothing
@@ -80,7 +81,8 @@ class IslandSolver {
   struct Try {
     const char* solver;
     const char* reason;
-    int most;  ///< iterations, -1: the solver's own
+    int most;      ///< iterations, -1: the solver's own
+    bool is_fine;  ///< aims at kExactAim at least
   };
   /// One of each name and tolerance is kept, made anew where its iterations change: those that a
   /// budget allows are any number.
@@ -96,9 +98,9 @@ class IslandSolver {
                      IslandAnswer& island);
   void choose(const lcp::Problem& problem, bool is_warm, bool is_limited);
   [[nodiscard]] double tolerance(const lcp::Problem& problem) const;
-  [[nodiscard]] double aim(std::string_view name, const lcp::Problem& problem) const;
-  void attempt(const lcp::Problem& problem, std::string_view name, int most, double seconds,
-               const lcp::Vector* start, lcp::Result& result);
+  [[nodiscard]] double aim(const Try& tried, const lcp::Problem& problem) const;
+  [[nodiscard]] bool attempt(const lcp::Problem& problem, const Try& tried, int most,
+                             double seconds, const lcp::Vector* start, lcp::Result& result);
   void certify_start(const lcp::Problem& problem, const lcp::Vector* start, lcp::Result& result);
   [[nodiscard]] lcp::Solver& solver(std::string_view name, double tolerance, int most);
 

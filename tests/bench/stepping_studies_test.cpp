@@ -66,6 +66,34 @@ TEST(StacksStudy, APyramidAtRestIsSeldomCorrected) {
   EXPECT_LE(corrected, 24);
 }
 
+/// What the contact problems of one second cost, in work units.
+double work_of(const SteppedScene& scene, const Accuracy& accuracy) {
+  collision::CollisionWorld world(scene.bodies, scene.colliders, PairingRule::kMinimum);
+  TimeStepSettings settings;
+  settings.step = scene.step;
+  settings.gravity = scene.gravity;
+  settings.margin = scene.margin;
+  settings.accuracy = accuracy;
+  TimeStepper stepper(scene.bodies, world, settings);
+  State state = scene.state;
+  StepReport report;
+  double work = 0.0;
+  for (int k = 0; k < static_cast<int>(1.0 / scene.step); ++k) {
+    stepper.step(state, report);
+    EXPECT_TRUE(lcp::is_solved(report.status)) << k;
+    work += report.work;
+  }
+  return work;
+}
+
+TEST(StacksStudy, ASlabThatSlidesCostsNoMoreWhereLessIsAsked) {
+  const SteppedScene scene = slope_scene(1.0, 1.0 / 240.0, 1.0);
+  const double engineering = work_of(scene, Accuracy::engineering());
+  EXPECT_GT(engineering, 0.0);
+  EXPECT_LE(work_of(scene, Accuracy::game()), engineering);
+  EXPECT_LE(work_of(scene, Accuracy::preview()), engineering);
+}
+
 double drift_of(const SteppedScene& scene) {
   TimeStepSettings settings;
   settings.accuracy = Accuracy::engineering();
