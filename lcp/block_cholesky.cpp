@@ -45,7 +45,7 @@ void BlockCholesky::analyse(const SparseMatrix& lower) {
   pattern_inner_.assign(lower.innerIndexPtr(), lower.innerIndexPtr() + lower.nonZeros());
   find_blocks(lower);
   find_graph(lower);
-  find_order();
+  supernodes_ = &least_fill_.find(graph_);
   lay_out_fronts();
   lay_out_stack();
   find_scatter(lower);
@@ -138,52 +138,37 @@ void BlockCholesky::find_graph(const SparseMatrix& lower) {
   }
 }
 
-void BlockCholesky::find_order() {
-  // Below this a second ordering costs more than it can save in some factorisations.
-  constexpr double kManyFlops = 3e7;
-  order_by_minimum_degree(graph_, order_);
-  supernodes_.analyse(graph_, order_);
-  const double flops = supernodes_.flops(graph_);
-  if (flops > kManyFlops) {
-    nested_dissection_.order(graph_, order_);
-    other_supernodes_.analyse(graph_, order_);
-    if (other_supernodes_.flops(graph_) < flops) {
-      std::swap(supernodes_, other_supernodes_);
-    }
-  }
-}
-
 /// Sizes and places of the fronts' panels, and the scalar order of elimination.
 void BlockCholesky::lay_out_fronts() {
   const int blocks = graph_.nodes();
   pivot_start_.assign(1, 0);
   scalar_.resize(block_of_.size());
   for (int k = 0; k < blocks; ++k) {
-    const int block = supernodes_.order[k];
+    const int block = supernodes_->order[k];
     for (int i = 0; i < graph_.weight[block]; ++i) {
       scalar_[block_start_[block] + i] = pivot_start_.back() + i;
     }
     pivot_start_.push_back(pivot_start_.back() + graph_.weight[block]);
   }
-  const int count = supernodes_.count();
+  const int count = supernodes_->count();
   fronts_.assign(count + 1, {});
   std::ptrdiff_t panel = 0;
   int most_below = 0;
   counts_ = {};
   for (int s = 0; s < count; ++s) {
     Front& front = fronts_[s];
-    front.first = pivot_start_[supernodes_.first_pivot[s]];
-    front.columns = pivot_start_[supernodes_.first_pivot[s + 1]] - front.first;
+    front.first = pivot_start_[supernodes_->first_pivot[s]];
+    front.columns = pivot_start_[supernodes_->first_pivot[s + 1]] - front.first;
     int below = 0;
-    for (int k = supernodes_.row_start[s]; k < supernodes_.row_start[s + 1]; ++k) {
-      below += graph_.weight[supernodes_.order[supernodes_.rows[k]]];
+    for (int k = supernodes_->row_start[s]; k < supernodes_->row_start[s + 1]; ++k) {
+      below += graph_.weight[supernodes_->order[supernodes_->rows[k]]];
     }
     front.rows = front.columns + below;
     front.ld = leading_dimension(front.rows);
     front.ld_update = leading_dimension(below);
     front.panel = panel;
     panel += static_cast<std::ptrdiff_t>(front.ld) * front.columns;
-    front.parent = supernodes_.parent[s];
+    front.parent = supernodes_->parent[s];
     front.child = -1;
     front.sibling = -1;
     most_below = std::max(most_below, below);
@@ -225,7 +210,7 @@ void BlockCholesky::lay_out_stack() {
 /// Which number of H goes where in which panel.
 void BlockCholesky::find_scatter(const SparseMatrix& lower) {
   const int n = static_cast<int>(lower.cols());
-  const int count = supernodes_.count();
+  const int count = supernodes_->count();
   const int* outer = lower.outerIndexPtr();
   const int* inner = lower.innerIndexPtr();
   mark_.resize(n);  // the front of a column, in the order of elimination
@@ -258,8 +243,8 @@ void BlockCholesky::find_scatter(const SparseMatrix& lower) {
     const Front& front = fronts_[s];
     std::iota(bucket_.begin() + front.first, bucket_.begin() + front.first + front.columns, 0);
     int row = front.columns;
-    for (int k = supernodes_.row_start[s]; k < supernodes_.row_start[s + 1]; ++k) {
-      const int pivot = supernodes_.rows[k];
+    for (int k = supernodes_->row_start[s]; k < supernodes_->row_start[s + 1]; ++k) {
+      const int pivot = supernodes_->rows[k];
       for (int i = pivot_start_[pivot]; i < pivot_start_[pivot + 1]; ++i) {
         bucket_[i] = row++;
       }
@@ -272,7 +257,7 @@ void BlockCholesky::find_scatter(const SparseMatrix& lower) {
 
 /// Where the rows below each front's columns are, among all columns and among its parent's rows.
 void BlockCholesky::find_runs() {
-  const int count = supernodes_.count();
+  const int count = supernodes_->count();
   global_runs_.clear();
   parent_runs_.clear();
   place_.resize(block_of_.size());  // the parent's row of a column
@@ -280,8 +265,8 @@ void BlockCholesky::find_runs() {
     Front& front = fronts_[s];
     front.global_run = static_cast<int>(global_runs_.size());
     int row = 0;
-    for (int k = supernodes_.row_start[s]; k < supernodes_.row_start[s + 1]; ++k) {
-      const int pivot = supernodes_.rows[k];
+    for (int k = supernodes_->row_start[s]; k < supernodes_->row_start[s + 1]; ++k) {
+      const int pivot = supernodes_->rows[k];
       const int length = pivot_start_[pivot + 1] - pivot_start_[pivot];
       const int to = pivot_start_[pivot];
       if (static_cast<int>(global_runs_.size()) > front.global_run &&
@@ -387,7 +372,7 @@ bool BlockCholesky::factor_front(int s, const double* values) {
 }
 
 bool BlockCholesky::factor(const SparseMatrix& lower) {
-  for (int s = 0; s < supernodes_.count(); ++s) {
+  for (int s = 0; s < supernodes_->count(); ++s) {
     if (!factor_front(s, lower.valuePtr())) {
       return false;
     }
@@ -399,7 +384,7 @@ void BlockCholesky::solve(Vector& x) {
   for (Index i = 0; i < x.size(); ++i) {
     work_[scalar_[i]] = x[i];
   }
-  const int count = supernodes_.count();
+  const int count = supernodes_->count();
   for (int s = 0; s < count; ++s) {
     const Front& front = fronts_[s];
     for (int k = front.global_run; k < fronts_[s + 1].global_run; ++k) {

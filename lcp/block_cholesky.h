@@ -1,10 +1,8 @@
 #pragma once
 
 #include <signorini/lcp/dense_kernels.h>
-#include <signorini/lcp/fill_ordering.h>
-#include <signorini/lcp/nested_dissection.h>
+#include <signorini/lcp/least_fill.h>
 #include <signorini/lcp/sparse_cholesky.h>
-#include <signorini/lcp/supernodes.h>
 
 #include <cstddef>
 #include <vector>
@@ -13,7 +11,7 @@ namespace signorini::lcp {
 
 /// H = L L^T for matrices made of small dense blocks, such as one block a body: multifrontal over
 /// supernodes (Duff, Reid 1983; Liu, SIAM Review 34, 1992), ordered on the graph of the blocks by
-/// minimum degree, or where that makes many flops by nested dissection if it makes fewer.
+/// least_fill.h.
 ///
 /// The blocks are found in the pattern: neighbouring columns with the same rows. Each supernode is
 /// a dense panel, factored by dense_kernels.h; what it subtracts from later rows goes up to its
@@ -56,7 +54,6 @@ class BlockCholesky final : public SparseCholesky {
   [[nodiscard]] bool same_pattern(const SparseMatrix& lower) const;
   void find_blocks(const SparseMatrix& lower);
   void find_graph(const SparseMatrix& lower);
-  void find_order();
   void lay_out_fronts();
   void lay_out_stack();
   void find_scatter(const SparseMatrix& lower);
@@ -66,11 +63,10 @@ class BlockCholesky final : public SparseCholesky {
 
   DenseKernels kernels_;
   Graph graph_;
-  Supernodes supernodes_, other_supernodes_;
-  NestedDissection nested_dissection_;
+  LeastFill least_fill_;
+  const Supernodes* supernodes_ = nullptr;  // of least_fill_
   std::vector<int> pattern_outer_, pattern_inner_;
   std::vector<int> block_start_, block_of_, mark_;  // blocks of columns
-  std::vector<int> order_;
   std::vector<int> scalar_;  // column of H -> its place in the order of elimination
   std::vector<int> pivot_start_;
   std::vector<int> place_, bucket_;

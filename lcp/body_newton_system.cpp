@@ -1,3 +1,4 @@
+#include <signorini/lcp/back_end.h>
 #include <signorini/lcp/body_newton_system.h>
 
 #include <Eigen/LU>
@@ -15,9 +16,10 @@ void BodyNewtonSystem::set(const WhitenedRows& rows, const AlartCurnierFunction&
   function_ = &function;
   lu_.reset_bytes();
   find_pairs();
+  order_bodies();
   set_pattern();
   if (rows.degrees_of_freedom() > 0) {
-    lu_.prefer_diagonal();
+    lu_.keep_order();
     lu_.analyse(matrix());
   }
 }
@@ -28,8 +30,8 @@ void BodyNewtonSystem::find_pairs() {
   pairs_.clear();
   rows_->visit_groups([this](Entries entries, const double*, int) {
     for (const auto& f : entries) {
-      bodies_.resize(std::max<std::size_t>(bodies_.size(), f.body + 1), Body{0, 0});
-      bodies_[f.body] = {f.dimension, f.offset};
+      bodies_.resize(std::max<std::size_t>(bodies_.size(), f.body + 1), Body{});
+      bodies_[f.body] = {f.dimension, f.offset, 0, 0};
       for (const auto& e : entries) {
         if (e.dimension > 0 && f.dimension > 0) {
           pairs_.emplace_back(f.body, e.body);
@@ -41,8 +43,47 @@ void BodyNewtonSystem::find_pairs() {
   pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
 }
 
-int BodyNewtonSystem::find_start(const std::pair<int, int>& bodies) const {
-  return pair_start_[std::lower_bound(pairs_.begin(), pairs_.end(), bodies) - pairs_.begin()];
+/// Gives every body that rows move its rank, and the pairs their ranks for their numbers.
+void BodyNewtonSystem::order_bodies() {
+  const BackEndScope scope;  // orders allocate, as the factorisation does
+  graph_.start.assign(1, 0);
+  graph_.neighbours.clear();
+  graph_.weight.clear();
+  moved_.clear();
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    if (bodies_[b].dimension > 0) {
+      bodies_[b].rank = static_cast<int>(moved_.size());  // for now, its number in the graph
+      moved_.push_back(static_cast<int>(b));
+    }
+  }
+  std::size_t pair = 0;
+  for (const int b : moved_) {
+    for (; pair < pairs_.size() && pairs_[pair].first == b; ++pair) {
+      if (pairs_[pair].second != b) {
+        graph_.neighbours.push_back(bodies_[pairs_[pair].second].rank);
+      }
+    }
+    graph_.start.push_back(static_cast<int>(graph_.neighbours.size()));
+    graph_.weight.push_back(bodies_[b].dimension);
+  }
+  body_at_ = least_fill_.find(graph_).order;
+  int place = 0;
+  for (std::size_t k = 0; k < body_at_.size(); ++k) {
+    body_at_[k] = moved_[body_at_[k]];
+    Body& body = bodies_[body_at_[k]];
+    body.rank = static_cast<int>(k);
+    body.place = place;
+    place += body.dimension;
+  }
+  for (auto& [column, row] : pairs_) {
+    column = bodies_[column].rank;
+    row = bodies_[row].rank;
+  }
+  std::sort(pairs_.begin(), pairs_.end());
+}
+
+int BodyNewtonSystem::find_start(const std::pair<int, int>& ranks) const {
+  return pair_start_[std::lower_bound(pairs_.begin(), pairs_.end(), ranks) - pairs_.begin()];
 }
 
 /// One dense block for every pair.
@@ -52,16 +93,16 @@ void BodyNewtonSystem::set_pattern() {
   pair_start_.clear();
   diagonal_.resize(rows_->degrees_of_freedom());
   for (std::size_t first = 0, last = 0; first < pairs_.size(); first = last) {
-    const Body& column = bodies_[pairs_[first].first];
+    const Body& column = bodies_[body_at_[pairs_[first].first]];
     int length = 0;
     for (; last < pairs_.size() && pairs_[last].first == pairs_[first].first; ++last) {
       pair_start_.push_back(length);
-      length += bodies_[pairs_[last].second].dimension;
+      length += bodies_[body_at_[pairs_[last].second]].dimension;
     }
-    for (int c = column.offset; c < column.offset + column.dimension; ++c) {
+    for (int c = column.place; c < column.place + column.dimension; ++c) {
       for (std::size_t k = first; k < last; ++k) {
-        const Body& row = bodies_[pairs_[k].second];
-        for (int r = row.offset; r < row.offset + row.dimension; ++r) {
+        const Body& row = bodies_[body_at_[pairs_[k].second]];
+        for (int r = row.place; r < row.place + row.dimension; ++r) {
           if (r == c) {
             diagonal_[c] = static_cast<int>(inner_.size());
           }
@@ -77,7 +118,7 @@ void BodyNewtonSystem::set_pattern() {
     for (const auto& f : entries) {
       for (const auto& e : entries) {
         const bool meets = e.dimension > 0 && f.dimension > 0;
-        row_offset_.push_back(meets ? find_start({f.body, e.body}) : 0);
+        row_offset_.push_back(meets ? find_start({bodies_[f.body].rank, bodies_[e.body].rank}) : 0);
       }
     }
   });
@@ -134,7 +175,7 @@ void BodyNewtonSystem::assemble(const std::vector<Block>& B) {
         for (const auto& e : entries) {
           const int start = row_offset_[at++];
           for (int c = 0; c < f.dimension; ++c) {
-            double* column = values_.data() + outer_[f.offset + c] + start;
+            double* column = values_.data() + outer_[bodies_[f.body].place + c] + start;
             for (int i = 0; i < d; ++i) {
               const double right = product_[i * width + f.column + c];
               const double* left = G + i * width + e.column;
@@ -186,8 +227,16 @@ bool BodyNewtonSystem::solve(const Vector& F, Vector& dx) {
   if (rows_->degrees_of_freedom() > 0) {
     apply(inverse_, F, h_);
     rows_->transpose_times(h_, y_);
-    y_ = -y_;
-    lu_.solve({y_.data(), static_cast<std::size_t>(y_.size())});
+    in_order_.resize(y_.size());
+    for (const int b : body_at_) {
+      const Body& body = bodies_[b];
+      in_order_.segment(body.place, body.dimension) = -y_.segment(body.offset, body.dimension);
+    }
+    lu_.solve({in_order_.data(), static_cast<std::size_t>(in_order_.size())});
+    for (const int b : body_at_) {
+      const Body& body = bodies_[b];
+      y_.segment(body.offset, body.dimension) = in_order_.segment(body.place, body.dimension);
+    }
     rows_->times(y_, gy_);
     apply(*B_, gy_, h_);
     h_ += F;

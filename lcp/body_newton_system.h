@@ -1,6 +1,7 @@
 #pragma once
 
 #include <signorini/lcp/alart_curnier_function.h>
+#include <signorini/lcp/least_fill.h>
 #include <signorini/lcp/sparse_lu.h>
 #include <signorini/lcp/whitened_rows.h>
 
@@ -16,7 +17,8 @@ namespace signorini::lcp {
 ///
 /// The matrix has a row a degree of freedom of the bodies, however many contacts there are, one
 /// pattern for all steps, and is factored by SparseLu, since D is not symmetric where
-/// contacts slide. alpha > 0 keeps K invertible; the numbers of dx lose digits as alpha goes to 0.
+/// contacts slide, its bodies in the order of least_fill.h. alpha > 0 keeps K invertible; the
+/// numbers of dx lose digits as alpha goes to 0.
 class BodyNewtonSystem {
  public:
   /// Keeps rows and function, whose groups must be the same.
@@ -34,7 +36,8 @@ class BodyNewtonSystem {
 
  private:
   void find_pairs();
-  [[nodiscard]] int find_start(const std::pair<int, int>& bodies) const;
+  void order_bodies();
+  [[nodiscard]] int find_start(const std::pair<int, int>& ranks) const;
   void set_pattern();
   [[nodiscard]] SparseLu::View matrix() const;
   [[nodiscard]] bool invert_blocks(const std::vector<AlartCurnierFunction::Block>& A,
@@ -50,10 +53,16 @@ class BodyNewtonSystem {
   struct Body {
     int dimension;
     int offset;  // in u
+    int rank;    // in the order of elimination
+    int place;   // of its first row in the matrix
   };
   std::vector<Body> bodies_;
-  // Two bodies that share a group, that of the columns first; sorted, and where the rows of the
-  // second start in the columns of the first.
+  Graph graph_;  // of the bodies that rows move, by their number among these
+  LeastFill least_fill_;
+  std::vector<int> moved_;    // that number's body
+  std::vector<int> body_at_;  // of every rank
+  // Two bodies that share a group, by rank, that of the columns first; sorted, and where the rows
+  // of the second start in the columns of the first.
   std::vector<std::pair<int, int>> pairs_;
   std::vector<int> pair_start_;
   std::vector<int> outer_, inner_;  // the pattern of H
@@ -63,6 +72,7 @@ class BodyNewtonSystem {
   std::vector<int> diagonal_;    // position of the diagonal in every column
   std::vector<double> product_;  // D G of a group
   Vector h_, y_, gy_;
+  Vector in_order_;  // y_, as the matrix has it
   SparseLu lu_;
 };
 

@@ -5,6 +5,7 @@
 #include <Eigen/SparseLU>
 #include <cstdint>
 #include <span>
+#include <variant>
 
 namespace signorini::lcp {
 
@@ -22,10 +23,10 @@ class SparseLu {
   /// A compressed matrix in someone else's memory.
   using View = Eigen::Map<const SparseMatrix>;
 
-  /// For matrices with a symmetric pattern and large diagonals: an ordering for it, and diagonal
-  /// pivots down to a tenth of the largest.
-  void prefer_diagonal();
-  /// Orders and analyses the pattern. @param matrix n x n, n >= 1
+  /// For matrices with a symmetric pattern, large diagonals, and rows that stand in an order with
+  /// little fill: keeps it, with diagonal pivots down to a tenth of the largest.
+  void keep_order();
+  /// Analyses the pattern, and orders it but after keep_order(). @param matrix n x n, n >= 1
   void analyse(const View& matrix);
   /// Factors a matrix of the analysed pattern. @return false if it is singular or not finite;
   /// solve() must then not be called.
@@ -38,7 +39,9 @@ class SparseLu {
   void reset_bytes() { bytes_ = 0; }
 
  private:
-  Eigen::SparseLU<SparseMatrix, Eigen::COLAMDOrdering<int>> lu_;
+  using Ordering = Eigen::SparseLU<SparseMatrix, Eigen::COLAMDOrdering<int>>;
+  using Keeping = Eigen::SparseLU<SparseMatrix, Eigen::NaturalOrdering<int>>;
+  std::variant<Ordering, Keeping> lu_;
   std::int64_t bytes_ = 0;
 };
 
