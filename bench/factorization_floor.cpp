@@ -1,5 +1,7 @@
 #include "bench/factorization_floor.h"
 
+#include <signorini/lcp/whitened_rows.h>
+
 #include "bench/thread_time.h"
 
 #include <algorithm>
@@ -68,6 +70,33 @@ FactorizationFloor measure_factorization_floor(const lcp::FactoredMatrix& A, con
     floor.counts = cholesky->counts();
   }
   return floor;
+}
+
+double measure_body_space_floor(const lcp::Problem& problem, const lcp::Vector& z) {
+  const auto* A = std::get_if<lcp::FactoredMatrix>(&problem.M);
+  if (A == nullptr) {
+    return 0.0;
+  }
+  constexpr double kActive = 1e6;
+  lcp::Vector d = (z.array() > 0.0).cast<double>() * kActive;
+  for (const lcp::FrictionCone& cone : problem.cones) {
+    d.segment(cone.normal_row, cone.dimension).setConstant(d[cone.normal_row]);
+  }
+  lcp::WhitenedRows whitened;
+  whitened.set(*A);
+  const lcp::SparseMatrix& H = whitened.body_space_matrix(d);
+  if (H.rows() == 0) {
+    return 0.0;
+  }
+  const auto cholesky = lcp::make_sparse_cholesky(reference_back_end());
+  lcp::Vector x = lcp::Vector::Ones(H.rows());
+  const double start = thread_seconds();
+  cholesky->analyse(H);
+  if (!cholesky->factor(H)) {
+    throw std::runtime_error("the body-space matrix could not be factored");
+  }
+  cholesky->solve(x);
+  return thread_seconds() - start;
 }
 
 }  // namespace signorini::bench

@@ -6,13 +6,14 @@
 #include "bench/laws_study.h"
 #include "bench/one_thread.h"
 #include "bench/peers_command.h"
-#include "bench/scaling_study.h"
+#include "bench/row_scaling_study.h"
 #include "bench/sequence_command.h"
 #include "bench/tradeoff_command.h"
 #include "bench/write_csv.h"
 
 #ifdef SIGNORINI_HAS_COLLISION
 #include "bench/collision_command.h"
+#include "bench/scaling_command.h"
 #include "bench/stepping_command.h"
 #endif
 
@@ -160,10 +161,10 @@ int run_laws(const StudyOptions& options) {
   return kClaimsHold;
 }
 
-int run_scaling(const StudyOptions& options) {
+int run_row_scaling(const StudyOptions& options) {
   make_folder(options);
-  const ScalingReport report = run_scaling_study({.max_rows = options.count}, std::cout);
-  write_csv(options.out, "scaling", report.to_csv());
+  const RowScalingReport report = run_row_scaling_study({.max_rows = options.count}, std::cout);
+  write_csv(options.out, "row-scaling", report.to_csv());
   return report.passed() ? kClaimsHold : kWrongClaim;
 }
 
@@ -205,14 +206,15 @@ int run(int argc, char** argv) {
   const CLI::App* laws_command =
       add_study(app, "laws", "The five desiderata of an impact law, for each law and for Bullet",
                 "impacts", laws);
-  StudyOptions scaling{.count = 10000};
-  CLI::App* scaling_command = app.add_subcommand(
-      "scaling", "The interior point from 1000 rows up, beside the factorisation floor");
-  scaling_command->add_option("--rows", scaling.count, "Rows of the largest problems")
+  StudyOptions row_scaling{.count = 10000};
+  CLI::App* row_scaling_command = app.add_subcommand(
+      "row-scaling", "The interior point from 1000 rows up, beside the factorisation floor");
+  row_scaling_command->add_option("--rows", row_scaling.count, "Rows of the largest problems")
       ->check(CLI::Range(1000, 1000000))
       ->capture_default_str();
-  scaling_command->add_option("--out", scaling.out,
-                              "Folder for scaling.csv, made if absent (default: print only)");
+  row_scaling_command->add_option("--out", row_scaling.out,
+                                  "Folder for row-scaling.csv, made if absent (default: print "
+                                  "only)");
   const PeersCommand peers(app);
   const BulletSetsCommand bullet_sets(app);
   const SequenceCommand sequence(app);
@@ -224,6 +226,7 @@ int run(int argc, char** argv) {
 #ifdef SIGNORINI_HAS_COLLISION
   const CollisionCommand collision(app);
   const SteppingCommand stepping(app);
+  const ScalingCommand scaling(app);
 #endif
 #ifdef SIGNORINI_HAS_CLP
   const LimitCommand limit(app);
@@ -241,9 +244,9 @@ int run(int argc, char** argv) {
     pin_libraries_to_one_thread(argv);
     return tradeoff.run();
   }
-  if (scaling_command->parsed()) {
+  if (row_scaling_command->parsed()) {
     pin_libraries_to_one_thread(argv);
-    return run_scaling(scaling);
+    return run_row_scaling(row_scaling);
   }
 #ifdef SIGNORINI_HAS_BULLET_DROP_IN
   if (drop_in.is_asked()) {
@@ -251,6 +254,10 @@ int run(int argc, char** argv) {
   }
 #endif
 #ifdef SIGNORINI_HAS_COLLISION
+  if (scaling.is_asked()) {
+    pin_libraries_to_one_thread(argv);
+    return scaling.run();
+  }
   if (collision.is_asked()) {
     return collision.run();
   }

@@ -1,4 +1,4 @@
-#include "bench/scaling_study.h"
+#include "bench/row_scaling_study.h"
 
 #include <signorini/lcp/interior_point.h>
 #include <signorini/lcp/whitened_rows.h>
@@ -70,10 +70,10 @@ BackEndTime measure(std::string_view name, const lcp::SparseMatrix& H, int repet
   return time;
 }
 
-ScalingRow run_one(std::string_view family, int rows, int repetitions) {
+RowScalingRow run_one(std::string_view family, int rows, int repetitions) {
   const lcp::Problem problem = make_family({.family = family, .size = size_for(family, rows)});
   const auto& A = std::get<lcp::FactoredMatrix>(problem.M);
-  ScalingRow row{.family = family, .rows = static_cast<int>(problem.size())};
+  RowScalingRow row{.family = family, .rows = static_cast<int>(problem.size())};
   row.seconds = row.warm_seconds = std::numeric_limits<double>::infinity();
   const lcp::Problem other = changed(problem);
   lcp::Result cold;
@@ -104,7 +104,7 @@ ScalingRow run_one(std::string_view family, int rows, int repetitions) {
   return row;
 }
 
-void print(const ScalingRow& row, std::ostream& log) {
+void print(const RowScalingRow& row, std::ostream& log) {
   log << fmt::format("{:<10} {:>6}  {:<18} {:>9.3f} {:>3}  {:>9.3f} {:>3}  {:>9.3f} {:>6.1f} ",
                      row.family, row.rows, lcp::to_string(row.status), 1e3 * row.seconds,
                      row.factorizations, 1e3 * row.warm_seconds, row.warm_factorizations,
@@ -117,12 +117,12 @@ void print(const ScalingRow& row, std::ostream& log) {
 
 }  // namespace
 
-std::vector<Growth> ScalingReport::growth() const {
-  std::vector<Growth> all;
+std::vector<RowGrowth> RowScalingReport::growth() const {
+  std::vector<RowGrowth> all;
   for (const std::string_view family : family_names()) {
-    const ScalingRow* first = nullptr;
-    const ScalingRow* last = nullptr;
-    for (const ScalingRow& row : rows) {
+    const RowScalingRow* first = nullptr;
+    const RowScalingRow* last = nullptr;
+    for (const RowScalingRow& row : rows) {
       if (row.family == family) {
         first = first == nullptr ? &row : first;
         last = &row;
@@ -138,18 +138,18 @@ std::vector<Growth> ScalingReport::growth() const {
   return all;
 }
 
-bool ScalingReport::passed() const {
-  return std::ranges::all_of(rows, [](const ScalingRow& row) {
+bool RowScalingReport::passed() const {
+  return std::ranges::all_of(rows, [](const RowScalingRow& row) {
     return lcp::is_solved(row.status) && lcp::is_solved(row.warm_status);
   });
 }
 
-std::string ScalingReport::to_csv() const {
+std::string RowScalingReport::to_csv() const {
   std::string csv =
       "family,rows,status,unit_free_residual,seconds,factorizations,warm_status,warm_seconds,"
       "warm_factorizations,floor_seconds,times_floor,back_end,analyse_seconds,factor_seconds,"
       "solve_seconds,factor_entries,factor_flops,bytes\n";
-  for (const ScalingRow& row : rows) {
+  for (const RowScalingRow& row : rows) {
     for (const BackEndTime& time : row.back_ends) {
       csv += fmt::format(
           "{},{},{},{:.3g},{:.6g},{},{},{:.6g},{},{:.6g},{:.4g},{},{:.6g},{:.6g},"
@@ -164,8 +164,8 @@ std::string ScalingReport::to_csv() const {
   return csv;
 }
 
-ScalingReport run_scaling_study(const ScalingOptions& options, std::ostream& log) {
-  ScalingReport report;
+RowScalingReport run_row_scaling_study(const RowScalingOptions& options, std::ostream& log) {
+  RowScalingReport report;
   log << "CPU times in ms, the least of " << options.repetitions
       << "; fac: factorisations; floor: one analysis, factorisation and solve of the active rows "
          "by "
@@ -184,7 +184,7 @@ ScalingReport run_scaling_study(const ScalingOptions& options, std::ostream& log
       print(report.rows.back(), log);
     }
   }
-  for (const Growth& growth : report.growth()) {
+  for (const RowGrowth& growth : report.growth()) {
     log << fmt::format("{:<10} time ~ rows^{:.2f}, floor ~ rows^{:.2f}{}\n", growth.family,
                        growth.solver, growth.floor,
                        growth.solver <= growth.floor + 0.1 ? "" : "  (faster than the floor)");

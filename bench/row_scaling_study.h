@@ -13,7 +13,7 @@ namespace signorini::bench {
 /// How the interior point grows with the problem, beside the factorisation floor: every family at
 /// 1000, 3000, 10,000, ... rows, cold and warm (the bodies' velocities changed by 1 %). Times are
 /// CPU times of the one thread that works.
-struct ScalingOptions {
+struct RowScalingOptions {
   int max_rows = 10000;  ///< >= 1000; 50,000 takes minutes
   int repetitions = 3;   ///< >= 1; the least time counts
 };
@@ -27,7 +27,7 @@ struct BackEndTime {
   lcp::SparseCholeskyCounts counts = {};
 };
 
-struct ScalingRow {
+struct RowScalingRow {
   std::string_view family;
   int rows = 0;
   lcp::Status status = lcp::Status::kNotRun;  ///< cold
@@ -42,21 +42,22 @@ struct ScalingRow {
 };
 
 /// The exponents of time ~ rows^k between a family's smallest and largest problem.
-struct Growth {
+struct RowGrowth {
   std::string_view family;
   double solver = 0.0;
   double floor = 0.0;
 };
 
-struct ScalingReport {
-  std::vector<ScalingRow> rows;
-  [[nodiscard]] std::vector<Growth> growth() const;
+struct RowScalingReport {
+  std::vector<RowScalingRow> rows;
+  [[nodiscard]] std::vector<RowGrowth> growth() const;
   /// Every problem is solved.
   [[nodiscard]] bool passed() const;
   [[nodiscard]] std::string to_csv() const;
 };
 
 /// Runs the study; a line a problem goes to `log` as soon as it is known, then the exponents.
-[[nodiscard]] ScalingReport run_scaling_study(const ScalingOptions& options, std::ostream& log);
+[[nodiscard]] RowScalingReport run_row_scaling_study(const RowScalingOptions& options,
+                                                     std::ostream& log);
 
 }  // namespace signorini::bench

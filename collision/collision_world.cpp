@@ -5,6 +5,7 @@
 #include <signorini/core/model/number_text.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -99,6 +100,9 @@ void CollisionWorld::find(const State& state, double margin, ContactSet& contact
     }
   }
 
+  using Clock = std::chrono::steady_clock;
+  using Seconds = std::chrono::duration<double>;
+  const Clock::time_point start = Clock::now();
   poses_.clear();
   bounds_.clear();
   for (const Collider& collider : colliders_) {
@@ -107,6 +111,7 @@ void CollisionWorld::find(const State& state, double margin, ContactSet& contact
     bounds_.push_back(widened(bounds(collider.shape, pose), 0.5 * margin));
   }
   broad_phase_.find(bounds_, is_immovable_, pairs_);
+  const Clock::time_point paired = Clock::now();
 
   contacts.clear();
   loss_ = {};
@@ -131,6 +136,7 @@ void CollisionWorld::find(const State& state, double margin, ContactSet& contact
     contacts.insert(contacts.end(), of_pair.begin(), of_pair.end());
     known_.keep(pair, loss, of_pair);
   }
+  find_seconds_ = {Seconds(paired - start).count(), Seconds(Clock::now() - paired).count()};
 }
 
 /// The contacts of a pair, as find() gives them, into found_.

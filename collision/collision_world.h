@@ -12,6 +12,12 @@
 
 namespace signorini::collision {
 
+/// Wall time of a find(), s.
+struct FindSeconds {
+  double broad = 0.0;   ///< poses, bounds, and the pairs whose bounds overlap
+  double narrow = 0.0;  ///< these pairs' contacts
+};
+
 /// The colliders of a scene: makes contact sets and contact times for a stepper. Skipped are pairs
 /// of which no body is dynamic (fixed and kinematic bodies do not push each other), pairs of one
 /// body, and what the filters leave out (pair_filter.h). In each contact A is the body of the
@@ -51,6 +57,8 @@ class CollisionWorld final : public ContactFinder {
   [[nodiscard]] const ReductionLoss& reduction_loss() const { return loss_; }
   /// Pair queries of the last find().
   [[nodiscard]] int pairs_asked() const { return pairs_asked_; }
+  /// Of the last find().
+  [[nodiscard]] const FindSeconds& find_seconds() const { return find_seconds_; }
 
   [[nodiscard]] const std::vector<Collider>& colliders() const { return colliders_; }
 
@@ -67,6 +75,7 @@ class CollisionWorld final : public ContactFinder {
   int most_of_a_patch_ = 0;                 ///< 0: all
   ReductionLoss loss_;
   int pairs_asked_ = 0;
+  FindSeconds find_seconds_;
 
   BroadPhase broad_phase_;  // from here on workspace
   std::vector<Pose> poses_;

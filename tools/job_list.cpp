@@ -46,15 +46,20 @@ class StopSignals {
 /// How far the list is, and the time left if the rest goes on at the same pace.
 class Progress {
  public:
-  Progress(bool is_shown, std::size_t count) : is_shown_(is_shown), left_(count), count_(count) {}
-  void start(const std::string& job) { show(job); }
-  void finish(const std::string& job) {
-    --left_;
-    ++done_;
-    show(job);
+  Progress(bool is_shown, const std::vector<Job>& jobs) : is_shown_(is_shown), count_(jobs.size()) {
+    for (const Job& job : jobs) {
+      weight_left_ += job.weight;
+    }
   }
-  void skip() {
-    --left_;
+  void start(const Job& job) { show(job.name); }
+  void finish(const Job& job) {
+    weight_left_ -= job.weight;
+    weight_done_ += job.weight;
+    ++done_;
+    show(job.name);
+  }
+  void skip(const Job& job) {
+    weight_left_ -= job.weight;
     --count_;
   }
   void end() const {
@@ -67,7 +72,7 @@ class Progress {
     const double spent = std::chrono::duration<double>(Clock::now() - start_).count();
     std::string rest;
     if (done_ > 0) {
-      const double seconds = spent / static_cast<double>(done_) * static_cast<double>(left_);
+      const double seconds = spent / weight_done_ * std::max(weight_left_, 0.0);
       rest = seconds < 90.0 ? fmt::format(", about {:.0f} s left", std::ceil(seconds))
                             : fmt::format(", about {:.0f} min left", std::ceil(seconds / 60.0));
     }
@@ -77,7 +82,8 @@ class Progress {
 
   using Clock = std::chrono::steady_clock;
   bool is_shown_;
-  std::size_t left_;
+  double weight_left_ = 0.0;
+  double weight_done_ = 0.0;
   std::size_t count_;
   std::size_t done_ = 0;
   Clock::time_point start_ = Clock::now();
@@ -93,6 +99,10 @@ void check(const std::vector<Job>& jobs, const JobListOptions& options) {
   }
   std::set<std::string> names;
   for (const Job& job : jobs) {
+    if (!(job.weight > 0.0)) {
+      throw std::invalid_argument(
+          fmt::format("jobs: weight of {}: must be > 0, got {}", job.name, job.weight));
+    }
     if (!names.insert(job.name).second) {
       throw std::invalid_argument("jobs: two are called " + job.name);
     }
@@ -137,7 +147,7 @@ class Dispatch {
         int& most = result_.jobs[one].at_once;
         most = std::max(most, static_cast<int>(running_.size()));
       }
-      progress_.start(jobs_[job].name);
+      progress_.start(jobs_[job]);
     }
   }
   void take(JobCrew::Finished finished) {
@@ -150,7 +160,7 @@ class Dispatch {
     if (result.is_done) {
       files_.keep(jobs_[job], result);
     }
-    progress_.finish(jobs_[job].name);
+    progress_.finish(jobs_[job]);
   }
 
   const std::vector<Job>& jobs_;
@@ -211,12 +221,12 @@ JobListResult run_job_list(const std::vector<Job>& jobs, const JobListOptions& o
     crew = std::move(ranks);
   }
   const JobFiles files(options.folder, options.settings);
-  Progress progress(options.shows_progress, jobs.size());
+  Progress progress(options.shows_progress, jobs);
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     if (std::optional<JobResult> kept = files.find(jobs[i])) {
       result.jobs[i] = std::move(*kept);
       ++result.taken_over;
-      progress.skip();
+      progress.skip(jobs[i]);
     }
   }
   if (crew == nullptr) {

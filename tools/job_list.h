@@ -11,6 +11,7 @@ namespace signorini::tools {
 struct Job {
   std::string name;                  ///< unique in its list
   std::function<std::string()> run;  ///< what it came to, as bytes; run in a child process
+  double weight = 1.0;               ///< > 0: its share of the time left, in any unit
 };
 
 struct JobListOptions {

@@ -43,6 +43,7 @@ struct IslandAnswer {
   double work = 0.0;  ///< what was spent, in units of StepBudget::work
   /// Of the dial: whether a start that nearly was the answer was made so (by `sticking`).
   bool corrected = false;
+  double assemble_seconds = 0.0;  ///< wall time of making `velocity`, s
 };
 
 /// Solves islands one after the other with solvers of its own, for one thread. The answer depends

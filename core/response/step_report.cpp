@@ -44,7 +44,9 @@ std::string to_text(const StepReport& report) {
             (report.is_deterministic ? "" : ", limited by time: not deterministic") + "\n";
   }
   text += "seconds: find " + number_text(report.seconds.find) + ", solve " +
-          number_text(report.seconds.solve) + ", project " + number_text(report.seconds.project) +
+          number_text(report.seconds.solve) + " (rows " + number_text(report.seconds.assemble) +
+          ", solvers " + number_text(report.seconds.solvers) + ", move " +
+          number_text(report.seconds.move) + "), project " + number_text(report.seconds.project) +
           "\n";
   for (std::size_t k = 0; k < report.islands.size(); ++k) {
     const IslandReport& island = report.islands[k];

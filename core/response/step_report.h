@@ -29,6 +29,10 @@ struct StageSeconds {
   double find = 0.0;     ///< contacts at the start
   double solve = 0.0;    ///< rows made, islands solved, bodies moved
   double project = 0.0;  ///< contacts at the end, overlap projected, the rest
+  // Parts of `solve`; of islands on several threads the sums over all threads.
+  double assemble = 0.0;  ///< the islands' rows made
+  double solvers = 0.0;   ///< the islands' problems solved and certified
+  double move = 0.0;      ///< bodies moved
 };
 
 /// What one step did.

@@ -209,8 +209,10 @@ void TimeStepper::solve_islands(std::span<const ContactIsland> islands, const St
     for (const int i : island.members) {
       answer.contacts.push_back(report.contacts[i]);
     }
+    Stopwatch watch;
     answer.velocity.assemble(friction_model(), island.bodies, island.state, island.contacts,
                              island.allowance, settings_.pyramid_sides, island.joints);
+    answer.assemble_seconds = watch.lap();
     const double share = static_cast<double>(island_sizes_[k]) / contacts_and_joints;
     solver.solve(island.joints, memory, settings_.budget.share(share), answer);
   };
@@ -231,8 +233,10 @@ void TimeStepper::solve_islands(std::span<const ContactIsland> islands, const St
   for (std::size_t k = 0; k < islands.size(); ++k) {
     collect(static_cast<int>(k), islands[k], start, report);
     seconds += std::max(answers_[k].result.statistics.solve_seconds, 0.0);
+    report.seconds.assemble += answers_[k].assemble_seconds;
     worst = is_worse(answers_[k].result, answers_[worst].result) ? k : worst;
   }
+  report.seconds.solvers += seconds;
   if (islands.empty()) {
     nothing_.assemble(friction_model(), bodies_, start, {}, lcp::Vector(), settings_.pyramid_sides);
     projection_solver_->solve(nothing_.problem(), report.result);
@@ -436,7 +440,9 @@ bool TimeStepper::solve_selection(const Bodies& solved, const State& state, Step
   }
   report.contacts_apart = selection_.apart();
   report.contacts_asleep = selection_.asleep();
+  Stopwatch watch;
   move(state, next_);
+  report.seconds.move = watch.lap();
   return true;
 }
 

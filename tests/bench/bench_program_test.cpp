@@ -108,6 +108,34 @@ TEST_F(BenchProgram, TradeoffIsTheSameForAnyNumberOfProcessesAndRanks) {
 #endif
 }
 
+#ifdef SIGNORINI_HAS_SCALING
+TEST_F(BenchProgram, ScalingComparesWithABaselineAndFailsOnAWorseCountAlone) {
+  const std::string small =
+      "scaling --bodies 10 --scenes stacks --steps 1 --threads 1 --bullet-iterations 0 ";
+  EXPECT_EQ(run(small + "--out '" + folder_.string() + "'"), 0);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "jobs"));
+  const std::filesystem::path stored = folder_ / "scaling.csv";
+  std::ifstream in(stored);
+  std::stringstream csv;
+  csv << in.rdbuf();
+  const auto against = [&](const std::string& from, const std::string& to) {
+    std::string text = csv.str();
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << text;
+    std::ofstream(folder_ / "changed.csv") << text.replace(at, from.size(), to);
+    return run(small + "--baseline '" + (folder_ / "changed.csv").string() + "'");
+  };
+  EXPECT_EQ(against(",,40,120,", ",,40,120,"), 0);  // a tower of ten: 40 contacts
+  EXPECT_EQ(against(",,40,120,", ",,39,120,"), 1);
+  EXPECT_EQ(against(",,40,120,", ",,41,120,"), 0);
+  EXPECT_EQ(against(",,40,120,", ",,many,120,"), 65);
+  EXPECT_EQ(against("scene,", "place,"), 65);
+  EXPECT_EQ(run(small + "--baseline '" + (folder_ / "absent.csv").string() + "'"), 65);
+  EXPECT_EQ(run(small + "--accuracy game --baseline '" + stored.string() + "'"), 65);
+  EXPECT_EQ(run("scaling --bodies 5"), 64);
+}
+#endif
+
 TEST_F(BenchProgram, BulletSetsWritesItsCsvOrSaysThatThereIsNoBullet) {
   const int code = run("bullet-sets --sets stack10 --repeats 1 --out '" + folder_.string() + "'");
 #ifdef SIGNORINI_HAS_BULLET

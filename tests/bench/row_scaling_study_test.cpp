@@ -1,4 +1,4 @@
-#include "bench/scaling_study.h"
+#include "bench/row_scaling_study.h"
 
 #include "bench/contact_families.h"
 #include "bench/factorization_floor.h"
@@ -24,10 +24,10 @@ TEST(FactorizationFloor, CountsTheActiveRows) {
   }
 }
 
-TEST(ScalingReport, GrowthIsTheSlopeInLogarithms) {
-  ScalingReport report;
+TEST(RowScalingReport, GrowthIsTheSlopeInLogarithms) {
+  RowScalingReport report;
   for (const int rows : {1000, 10000}) {
-    ScalingRow row;
+    RowScalingRow row;
     row.family = "tower4";
     row.rows = rows;
     row.status = row.warm_status = lcp::Status::kSolved;
@@ -43,9 +43,9 @@ TEST(ScalingReport, GrowthIsTheSlopeInLogarithms) {
   EXPECT_FALSE(report.passed());
 }
 
-TEST(ScalingStudy, EveryFamilyOfAThousandRowsIsSolved) {
+TEST(RowScalingStudy, EveryFamilyOfAThousandRowsIsSolved) {
   std::ostringstream log;
-  const ScalingReport report = run_scaling_study({.max_rows = 1000, .repetitions = 1}, log);
+  const RowScalingReport report = run_row_scaling_study({.max_rows = 1000, .repetitions = 1}, log);
   EXPECT_TRUE(report.passed()) << log.str();
   EXPECT_EQ(report.rows.size(), family_names().size());
   const std::string csv = report.to_csv();

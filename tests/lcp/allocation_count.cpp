@@ -14,11 +14,15 @@ extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*malloc_hook)(con
 #endif
 
 namespace {
+std::atomic<int> counters{0};  // that live
 std::atomic<long> allocations{0};
 std::atomic<long> back_end_allocations{0};
 thread_local long allowed_allocations = -1;  // of this thread; < 0: any number
 
 void count_one() {
+  if (counters.load(std::memory_order_relaxed) == 0) {
+    return;
+  }
   ++(signorini::lcp::BackEndScope::is_active() ? back_end_allocations : allocations);
 }
 
@@ -75,7 +79,13 @@ int posix_memalign(void** out, std::size_t alignment, std::size_t size) {
 namespace signorini::lcp {
 
 AllocationCount::AllocationCount()
-    : at_start_(allocations.load()), back_end_at_start_(back_end_allocations.load()) {}
+    : at_start_(allocations.load()), back_end_at_start_(back_end_allocations.load()) {
+  ++counters;
+}
+
+AllocationCount::~AllocationCount() {
+  --counters;
+}
 
 long AllocationCount::count() const {
   return allocations.load() - at_start_;

@@ -3,13 +3,17 @@
 namespace signorini::lcp {
 
 /// Counts every allocation of the process (malloc, calloc, realloc, aligned forms, hence operator
-/// new and Eigen) while it lives, on all threads. Link allocation_count.cpp into the test.
+/// new and Eigen) while it lives, on all threads; while none lives, none is counted, so that times
+/// are what they are without. Link allocation_count.cpp into the test.
 /// What a sparse back-end allocates (lcp/back_end.h) is counted apart. signorini_test() keeps
 /// OpenBLAS from starting threads of its own, which allocate when they please; by hand, set
 /// OPENBLAS_NUM_THREADS=1.
 class AllocationCount {
  public:
   AllocationCount();
+  ~AllocationCount();
+  AllocationCount(const AllocationCount&) = delete;
+  AllocationCount& operator=(const AllocationCount&) = delete;
   [[nodiscard]] long count() const;
   [[nodiscard]] long back_end_count() const;
 
