@@ -258,29 +258,33 @@ Audit audit(const ScalingScene& scaling, const ScalingRunOptions& options) {
   return audit;
 }
 
-/// Medians of the stages of the steps that are timed.
-class StageTimes {
+/// The steps that are timed.
+class StepTimes {
  public:
   void add(double step, const StageSeconds& stages, double find) {
     step_.push_back(step);
-    rows_.push_back(stages.assemble);
-    solvers_.push_back(stages.solvers);
-    move_.push_back(stages.move);
-    const double all = stages.find + stages.solve + stages.project;
-    rest_.push_back(std::max(0.0, all - find - stages.assemble - stages.solvers - stages.move));
+    const double wall = stages.find + stages.solve + stages.project;
+    if (const double delay = wall / step; delay < least_delay_) {
+      least_delay_ = delay;
+      undisturbed_ = stages;
+      rest_ = std::max(0.0, wall - find - stages.assemble - stages.solvers - stages.move);
+    }
   }
   void write(bool with_stages, ScalingCosts& costs) const {
     costs.step = median(step_);
     if (with_stages) {
-      costs.rows = median(rows_);
-      costs.solvers = median(solvers_);
-      costs.move = median(move_);
-      costs.rest = median(rest_);
+      costs.rows = undisturbed_.assemble;
+      costs.solvers = undisturbed_.solvers;
+      costs.move = undisturbed_.move;
+      costs.rest = rest_;
     }
   }
 
  private:
-  std::vector<double> step_, rows_, solvers_, move_, rest_;
+  std::vector<double> step_;
+  double least_delay_ = std::numeric_limits<double>::infinity();
+  StageSeconds undisturbed_;  // of the step with the least wall time for its CPU time
+  double rest_ = 0.0;
 };
 
 /// The timed run with so many threads: CPU time on one, wall time on more.
@@ -290,7 +294,7 @@ void time_steps(const ScalingScene& scaling, int threads, const Audit& audit, Sc
   const PeakMemory peak;
   const double before = allocated_bytes();
   Stepping stepping(scaling.scene, row.accuracy, threads, nullptr);
-  StageTimes times;
+  StepTimes times;
   for (int k = 0; k <= row.steps; ++k) {
     const double start = now();
     stepping.step();

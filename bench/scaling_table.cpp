@@ -91,8 +91,10 @@ void print_growth(const ScalingReport& report, const std::string& scene, std::os
 void print(const ScalingReport& report, std::ostream& out) {
   out << report.remark << ".\n"
       << "Times of a step in ms, medians: first: without a start; step: those after it (CPU time, "
-         "one\nthread); its parts are wall times, broad and narrow phase those of the first (what "
-         "rests to the\nbit is not looked for again). kB/c: allocated by world and stepper, "
+         "one\nthread); its parts are wall times of the step that was disturbed least, broad and "
+         "narrow "
+         "phase\nthose of the first (what rests to the bit is not looked for again). kB/c: "
+         "allocated by world and stepper, "
          "peak/c: most resident, a contact.\nfloor: step over one sparse factorisation of the "
          "active rows in body space; memory: step over moving\nwhat it must touch at the bandwidth "
          "measured in this run; threads: how much faster than one (wall over\nCPU time). error: "
