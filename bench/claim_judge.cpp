@@ -369,10 +369,12 @@ ExactResiduals exact_residuals(const Problem& problem, const Vector& z) {
     r.unit_free =
         std::max(r.unit_free, mpq_class(s * mpq_class(exact_cone_step(problem, cone, z, w, s))));
     // The floor of a cone (certificate.h): what rounding z does to max(|z_T|, mu |z_N|).
-    const double boundary =
-        std::max(lcp::tangential_norm(cone.dimension, z.data() + cone.normal_row),
-                 cone.coefficient * std::abs(z[cone.normal_row]));
-    const mpq_class rounded = boundary;
+    // In rationals, and |z_T| by a quarter of z: doubles overflow near the largest z.
+    const Vector quarter = 0.25 * z.segment(cone.normal_row, cone.dimension);
+    const mpq_class tangential =
+        4 * mpq_class(lcp::tangential_norm(cone.dimension, quarter.data()));
+    const mpq_class along = mpq_class(cone.coefficient) * mpq_class(std::abs(z[cone.normal_row]));
+    const mpq_class rounded = std::max(tangential, along);
     natural_most = std::max(natural_most, rounded);
     most = std::max(most, mpq_class(s * rounded));
   }

@@ -293,6 +293,7 @@ TEST(FuzzStudy, WhatWasFoundStaysMended) {
       {"alart-curnier", 2018224, "a floor of mu |w_T| larger than that of the boundary"},
       {"alart-curnier", 2024692, "the same"},
       {"cone-interior-point", 3069053, "mu = 1e12 times a slip that long double loses beside it"},
+      {"cone-interior-point", 619561, "a floor that the judge's doubles made infinite: a crash"},
   };
   for (const Found& found : kFound) {
     std::ostringstream out;
