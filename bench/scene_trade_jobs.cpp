@@ -135,6 +135,7 @@ SceneTradeRow SceneTrade::row(std::size_t job, const tools::JobResult& result) c
                     .bodies = moving_bodies(scene),
                     .step = scene.step / run.divisor,
                     .divisor = run.divisor,
+                    .duration = scene.duration,
                     .setting = settings_[run.setting].name,
                     .library = settings_[run.setting].library,
                     .outcome = {}};
@@ -146,7 +147,7 @@ SceneTradeRow SceneTrade::row(std::size_t job, const tools::JobResult& result) c
   return row;
 }
 
-std::vector<TradeRun> trade_runs(const std::vector<SceneTradeRow>& rows) {
+std::vector<TradeRun> trade_runs(const std::vector<SceneTradeRow>& rows, double limit_seconds) {
   std::vector<TradeRun> runs;
   runs.reserve(rows.size());
   for (const SceneTradeRow& row : rows) {
@@ -155,7 +156,8 @@ std::vector<TradeRun> trade_runs(const std::vector<SceneTradeRow>& rows) {
                     .solver = setting_with_step(row),
                     .library = row.library,
                     .error = row.outcome.error,
-                    .seconds = row.outcome.whole_seconds});
+                    .seconds = row.outcome.whole_seconds,
+                    .limit_seconds = limit_seconds / row.duration});
   }
   return runs;
 }
@@ -172,7 +174,7 @@ std::string scenes_remark(const std::vector<SceneTradeRow>& rows,
   }
   return fmt::format(
       "{} scenes under {} settings, at their own steps divided by {}; {} runs came to no answer "
-      "(limit: {:g} s of CPU time, which is what they count as)",
+      "(limit: {:g} s of CPU time, which is what they count as, over the scene's duration)",
       scenes.size(), settings.size(), fmt::join(options.divisors, ", "), without, options.seconds);
 }
 

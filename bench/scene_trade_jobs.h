@@ -22,6 +22,7 @@ struct SceneTradeRow {
   int bodies = 0;     ///< that move
   double step = 0.0;  ///< s
   int divisor = 1;
+  double duration = 1.0;  ///< simulated, s, > 0
   std::string setting;
   std::string library;
   SceneOutcome outcome;
@@ -57,7 +58,9 @@ class SceneTrade {
 
 /// The rows as runs of tradeoff.h: form "stands", "slides" ..., size in bodies, the solver with its
 /// step, the error of the scene's scale, seconds of whole steps for a simulated second.
-[[nodiscard]] std::vector<TradeRun> trade_runs(const std::vector<SceneTradeRow>& rows);
+/// @param limit_seconds of a run, for its whole duration, > 0
+[[nodiscard]] std::vector<TradeRun> trade_runs(const std::vector<SceneTradeRow>& rows,
+                                               double limit_seconds);
 
 /// How many scenes and settings, and how often a run came to no answer, for the page.
 [[nodiscard]] std::string scenes_remark(const std::vector<SceneTradeRow>& rows,

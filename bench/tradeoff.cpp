@@ -20,6 +20,7 @@ struct Cell {
   std::string solver;
   std::string library;
   bool is_refused = true;
+  double limit_seconds = 0.0;
   std::vector<std::pair<double, double>> runs;  ///< error and seconds of each answer
 
   /// Seconds of the fastest answer that errs at most that; +infinity for none.
@@ -39,7 +40,12 @@ std::vector<Cell> cells_of(std::span<const TradeRun> runs) {
   for (const TradeRun& run : runs) {
     const auto [found, is_new] = place.try_emplace({run.problem, run.solver}, cells.size());
     if (is_new) {
-      cells.push_back({run.problem, run.which, run.solver, run.library, true, {}});
+      cells.push_back({.problem = run.problem,
+                       .which = run.which,
+                       .solver = run.solver,
+                       .library = run.library,
+                       .limit_seconds = run.limit_seconds,
+                       .runs = {}});
     }
     Cell& cell = cells[found->second];
     if (run.is_refused) continue;
@@ -55,15 +61,16 @@ struct Sum {
   double logs = 0.0;
 };
 
-void add(const Cell& cell, double level, double penalty_seconds, Sum& sum) {
+void add(const Cell& cell, double level, Sum& sum) {
   if (cell.is_refused) {
     ++sum.score.refused;
     return;
   }
   ++sum.score.problems;
   const double seconds = cell.seconds(level);
-  if (seconds < kInfinity) ++sum.score.solved;
-  sum.logs += std::log(std::min(seconds, penalty_seconds) + kShiftSeconds);
+  const bool is_solved = seconds < kInfinity;
+  if (is_solved) ++sum.score.solved;
+  sum.logs += std::log((is_solved ? seconds : cell.limit_seconds) + kShiftSeconds);
 }
 
 bool solved_all(const LevelScore& score) {
@@ -118,7 +125,7 @@ double finest_level(std::span<const LevelScore> scores, const LevelScore& of) {
 }
 
 /// Of ours that solve everything and take at most kAsFast times the fastest's time, the most
-/// accurate, then the fastest; null for none.
+/// accurate, of equally accurate ones the fastest; null for none.
 const LevelScore* recommended(std::span<const LevelScore> scores, const ProblemClass& which,
                               double level) {
   constexpr double kAsFast = 1.1;
@@ -128,7 +135,11 @@ const LevelScore* recommended(std::span<const LevelScore> scores, const ProblemC
   for (const LevelScore& score : scores) {
     if (score.which != which || score.level != level || !solved_all(score)) continue;
     if (score.library != "Signorini" || score.mean_seconds > most_seconds) continue;
-    if (finest_level(scores, score) < finest_level(scores, *best)) best = &score;
+    const double finest = finest_level(scores, score);
+    const double so_far = finest_level(scores, *best);
+    if (finest < so_far || (finest == so_far && score.mean_seconds < best->mean_seconds)) {
+      best = &score;
+    }
   }
   return best;
 }
@@ -240,7 +251,7 @@ int class_size(int count) {
   return bound;
 }
 
-std::vector<TradeRun> trade_runs(std::span<const DialRuns> dial) {
+std::vector<TradeRun> trade_runs(std::span<const DialRuns> dial, double limit_seconds) {
   std::vector<TradeRun> runs;
   for (const DialRuns& position : dial) {
     for (const PeersRow& row : position.result.rows) {
@@ -250,14 +261,15 @@ std::vector<TradeRun> trade_runs(std::span<const DialRuns> dial) {
                       .library = row.library,
                       .is_refused = row.run.verdict == Verdict::kRefused,
                       .error = row.run.certificate.natural_residual,
-                      .seconds = row.run.seconds});
+                      .seconds = row.run.seconds,
+                      .limit_seconds = limit_seconds});
     }
   }
   return runs;
 }
 
-std::vector<LevelScore> level_scores(std::span<const TradeRun> runs, std::span<const double> levels,
-                                     double penalty_seconds) {
+std::vector<LevelScore> level_scores(std::span<const TradeRun> runs,
+                                     std::span<const double> levels) {
   const std::vector<Cell> cells = cells_of(runs);
   std::vector<LevelScore> scores;
   for (const double level : levels) {
@@ -273,7 +285,7 @@ std::vector<LevelScore> level_scores(std::span<const TradeRun> runs, std::span<c
                          .library = cell.library}});
         found = sums.end() - 1;
       }
-      add(cell, level, penalty_seconds, *found);
+      add(cell, level, *found);
     }
     for (Sum& sum : sums) {
       if (sum.score.problems == 0) continue;

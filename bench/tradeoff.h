@@ -37,10 +37,15 @@ struct TradeRun {
   bool is_refused = false;
   double error = std::numeric_limits<double>::quiet_NaN();  ///< NaN: there is no answer
   double seconds = -1.0;                                    ///< < 0: there is no answer
+  /// What counts where no answer is good enough, in the unit of `seconds` (of a scene for one
+  /// simulated second, as they are): the limit of the run; > 0, the same of all runs of a problem.
+  double limit_seconds = 0.0;
 };
 
 /// The runs of solvers on problems: their error is the natural residual of the certificate.
-[[nodiscard]] std::vector<TradeRun> trade_runs(std::span<const DialRuns> dial);
+/// @param limit_seconds of each run
+[[nodiscard]] std::vector<TradeRun> trade_runs(std::span<const DialRuns> dial,
+                                               double limit_seconds);
 
 /// A solver over the problems of a class at a level of error. What an answer errs is judged by the
 /// runner, of a problem on the caller's data, of a scene by its closed form; what was asked for
@@ -54,7 +59,7 @@ struct LevelScore {
   int solved = 0;
   int refused = 0;
   /// Shifted geometric mean exp(mean(log(t + s))) - s of the seconds, s = kShiftSeconds, what was
-  /// not solved counting as penalty_seconds (Mittelmann's benchmarks); s.
+  /// not solved counting as the run's limit (Mittelmann's benchmarks); s.
   double mean_seconds = 0.0;
 };
 
@@ -62,10 +67,8 @@ inline constexpr double kShiftSeconds = 1e-4;
 
 /// All classes, levels and solvers, in the order in which they first appear; solvers that refused
 /// every problem of a class are left out.
-/// @param penalty_seconds time of a problem that was not solved, > 0
 [[nodiscard]] std::vector<LevelScore> level_scores(std::span<const TradeRun> runs,
-                                                   std::span<const double> levels,
-                                                   double penalty_seconds);
+                                                   std::span<const double> levels);
 
 /// One score a solver and class: its level is the worst error of its runs there (at least
 /// kLeastError), and it is left out where a run came to no answer. For pictures.

@@ -205,9 +205,8 @@ int TradeoffCommand::run() const {
     remarks.push_back(
         fmt::format("without {}: this build did not find {}", absent.library, absent.package));
   }
-  const std::vector<TradeRun> problem_runs = trade_runs(dial);
-  std::vector<LevelScore> problem_scores =
-      level_scores(problem_runs, o.levels, o.study.limits.child.seconds);
+  const std::vector<TradeRun> problem_runs = trade_runs(dial, o.study.limits.child.seconds);
+  std::vector<LevelScore> problem_scores = level_scores(problem_runs, o.levels);
   std::vector<TradeRun> scene_runs;
   std::vector<LevelScore> scene_scores;
 #ifdef SIGNORINI_HAS_SCENES
@@ -219,8 +218,8 @@ int TradeoffCommand::run() const {
         rows.push_back(scenes->row(i, job));
       }
     }
-    scene_runs = trade_runs(rows);
-    scene_scores = level_scores(scene_runs, o.scene_levels, o.scenes.seconds);
+    scene_runs = trade_runs(rows, o.scenes.seconds);
+    scene_scores = level_scores(scene_runs, o.scene_levels);
     remarks.push_back(scenes_remark(rows, o.scenes));
     if (!scenes->without_float().empty()) {
       remarks.push_back("without Bullet float: " + scenes->without_float());

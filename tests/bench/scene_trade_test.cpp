@@ -64,7 +64,7 @@ TEST(SceneTrade, JobsBringEveryRunHome) {
     EXPECT_LT(row.outcome.error, 1.0) << row.setting;
     EXPECT_EQ(row.kind, "slides");
   }
-  const std::vector<TradeRun> runs = trade_runs(rows);
+  const std::vector<TradeRun> runs = trade_runs(rows, 30.0);
   EXPECT_EQ(runs[0].which, (ProblemClass{"slides", 16, "bodies"}));
   EXPECT_NE(scene_trade_csv(rows).find("\"rolling-sphere\",slides,1,\"preview\",Signorini"),
             std::string::npos);
@@ -87,7 +87,10 @@ TEST(SceneTrade, OutOfTimeIsNoAnswer) {
   const tools::JobListResult result = tools::run_job_list(jobs, {});
   const SceneTradeRow row = trade.row(0, result.jobs[0]);
   EXPECT_EQ(row.outcome.said, "time limit");
-  EXPECT_LT(trade_runs({row})[0].seconds, 0.0);
+  EXPECT_LT(trade_runs({row}, 0.01)[0].seconds, 0.0);
+  // Seconds are for one simulated second, the limit too.
+  EXPECT_DOUBLE_EQ(trade_runs({row}, 0.01)[0].limit_seconds, 0.01 / row.duration);
+  EXPECT_EQ(row.duration, trade_scene("rolling-sphere").scene.duration);
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ const LevelScore& score(const std::vector<LevelScore>& scores, const std::string
 
 TEST(Tradeoff, AnswersCountByWhatTheyErrNotByWhatWasAsked) {
   const std::vector<double> levels = {1e-2, 1e-4, 1e-8};
-  const std::vector<LevelScore> scores = level_scores(trade_runs(two_positions()), levels, 5.0);
+  const std::vector<LevelScore> scores = level_scores(trade_runs(two_positions(), 5.0), levels);
   EXPECT_EQ(score(scores, "sweep", 1e-2).solved, 2);
   EXPECT_EQ(score(scores, "sweep", 1e-4).solved, 2);
   EXPECT_EQ(score(scores, "sweep", 1e-8).solved, 0);
@@ -60,7 +60,7 @@ TEST(Tradeoff, AnswersCountByWhatTheyErrNotByWhatWasAsked) {
 
 TEST(Tradeoff, MeanIsShiftedGeometricOfTheFastestPositions) {
   const std::vector<double> levels = {1e-4};
-  const std::vector<LevelScore> scores = level_scores(trade_runs(two_positions()), levels, 5.0);
+  const std::vector<LevelScore> scores = level_scores(trade_runs(two_positions(), 5.0), levels);
   const double s = kShiftSeconds;
   EXPECT_NEAR(score(scores, "newton", 1e-4).mean_seconds, std::sqrt((8e-3 + s) * (1e-2 + s)) - s,
               1e-12);
@@ -70,7 +70,7 @@ TEST(Tradeoff, MeanIsShiftedGeometricOfTheFastestPositions) {
 
 TEST(Tradeoff, FrontHoldsWhatNothingBeatsAndOnlyWhoSolvesAll) {
   const std::vector<double> levels = {1e-2, 1e-4, 1e-8};
-  const std::vector<LevelScore> scores = level_scores(trade_runs(two_positions()), levels, 5.0);
+  const std::vector<LevelScore> scores = level_scores(trade_runs(two_positions(), 5.0), levels);
   const std::vector<LevelScore> front = pareto_front(scores, {"lcp", 64});
   ASSERT_EQ(front.size(), 3u);
   EXPECT_EQ(front[0].solver + front[1].solver + front[2].solver, "sweepsweepnewton");
@@ -78,7 +78,7 @@ TEST(Tradeoff, FrontHoldsWhatNothingBeatsAndOnlyWhoSolvesAll) {
 }
 
 TEST(Tradeoff, ProfilesTakeUnsolvedAsInfinite) {
-  const std::vector<ProfilePanel> panels = level_profiles(trade_runs(two_positions()), 1e-8);
+  const std::vector<ProfilePanel> panels = level_profiles(trade_runs(two_positions(), 5.0), 1e-8);
   ASSERT_EQ(panels.size(), 1u);
   const std::vector<ProfileCurve> curves = profile_curves(panels[0]);
   ASSERT_EQ(curves.size(), 3u);
@@ -89,21 +89,21 @@ TEST(Tradeoff, ProfilesTakeUnsolvedAsInfinite) {
 TEST(Tradeoff, PageRecommendsOfOursTheFastestThatSolvesAllAndNamesFasterPeers) {
   const std::vector<double> levels = {1e-2, 1e-8};
   std::vector<DialRuns> dial = two_positions();
-  std::vector<LevelScore> scores = level_scores(trade_runs(dial), levels, 5.0);
+  std::vector<LevelScore> scores = level_scores(trade_runs(dial, 5.0), levels);
   std::string page = tradeoff_markdown(scores, {}, {"remark"});
   EXPECT_NE(page.find("| lcp | 64 | `sweep`"), std::string::npos) << page;
   EXPECT_EQ(page.find("is faster"), std::string::npos) << page;
 
   dial[0].result.rows[5] = row("b", 64, "theirs", 1e-9, 1e-5);
   dial[0].result.rows[2] = row("a", 60, "theirs", 1e-9, 1e-5);
-  scores = level_scores(trade_runs(dial), levels, 5.0);
+  scores = level_scores(trade_runs(dial, 5.0), levels);
   page = tradeoff_markdown(scores, {}, {});
   EXPECT_NE(page.find("(ODE theirs is faster"), std::string::npos) << page;
   EXPECT_NE(pareto_svg(scores, "t").find("theirs"), std::string::npos);
 }
 
 TEST(Tradeoff, AProfileOfAPartialStudyHasTheProblemsThatEverybodyTried) {
-  std::vector<TradeRun> runs = trade_runs(two_positions());
+  std::vector<TradeRun> runs = trade_runs(two_positions(), 5.0);
   std::erase_if(
       runs, [](const TradeRun& run) { return run.solver == "newton" && run.problem == "a/lcp"; });
   const std::vector<ProfilePanel> panels = level_profiles(runs, 1e-2);
@@ -119,13 +119,14 @@ TEST(Tradeoff, OfWhatIsAsFastTheMoreAccurateIsRecommended) {
                     .solver = solver,
                     .library = "Signorini",
                     .error = error,
-                    .seconds = seconds};
+                    .seconds = seconds,
+                    .limit_seconds = 5.0};
   };
   const std::vector<double> levels = {1e-2, 1e-8};
   const auto table = [&](double reference_seconds) {
     const std::vector<TradeRun> runs = {run("game", 1e-3, 1.0),
                                         run("reference", 1e-9, reference_seconds)};
-    return recommendations_markdown({}, level_scores(runs, levels, 5.0));
+    return recommendations_markdown({}, level_scores(runs, levels));
   };
   EXPECT_NE(table(1.05).find("| stands | 16 | `reference` 1.1s | `reference`"), std::string::npos)
       << table(1.05);
@@ -133,8 +134,41 @@ TEST(Tradeoff, OfWhatIsAsFastTheMoreAccurateIsRecommended) {
       << table(1.5);
 }
 
+TEST(Tradeoff, OfEquallyAccurateOnesTheFastestIsRecommended) {
+  const auto run = [](const std::string& solver, double error, double seconds) {
+    return TradeRun{.problem = "p",
+                    .which = {"stands", 16, "bodies"},
+                    .solver = solver,
+                    .library = "Signorini",
+                    .error = error,
+                    .seconds = seconds,
+                    .limit_seconds = 5.0};
+  };
+  // The fastest is coarse; of the two that are as accurate as each other the slower comes first.
+  const std::vector<TradeRun> runs = {run("coarse", 1e-3, 1.0), run("slow", 1e-9, 1.09),
+                                      run("quick", 1e-9, 1.02)};
+  const std::vector<double> levels = {1e-2, 1e-8};
+  const std::string table = recommendations_markdown({}, level_scores(runs, levels));
+  EXPECT_NE(table.find("| `quick` 1.0s | `quick` 1.0s |"), std::string::npos) << table;
+}
+
+TEST(Tradeoff, WhatIsNotSolvedCountsAsTheLimitOfItsRun) {
+  const std::vector<double> levels = {1e-2};
+  TradeRun run{.problem = "p",
+               .which = {"stands", 16, "bodies"},
+               .solver = "s",
+               .library = "Signorini",
+               .error = 1.0,
+               .seconds = 1e-3,
+               .limit_seconds = 120.0};
+  EXPECT_NEAR(level_scores(std::vector{run}, levels).front().mean_seconds, 120.0, 1e-9);
+  run.error = 1e-3;  // an answer counts as what it took
+  run.seconds = 200.0;
+  EXPECT_NEAR(level_scores(std::vector{run}, levels).front().mean_seconds, 200.0, 1e-9);
+}
+
 TEST(Tradeoff, PictureShowsTheWorstErrorOfWhoAnswersEverything) {
-  std::vector<TradeRun> runs = trade_runs(two_positions());
+  std::vector<TradeRun> runs = trade_runs(two_positions(), 5.0);
   std::erase_if(runs, [](const TradeRun& run) { return run.seconds < 0.0 && run.is_refused; });
   const std::vector<LevelScore> scores = worst_error_scores(runs);
   ASSERT_EQ(scores.size(), 2U) << "theirs was out of time once";
@@ -150,13 +184,13 @@ TEST(Tradeoff, WhoSolvesMoreThanOursIsNamed) {
   }
   const std::vector<double> levels = {1e-8};
   const std::string table =
-      recommendations_markdown(level_scores(trade_runs(dial), levels, 5.0), {});
+      recommendations_markdown(level_scores(trade_runs(dial, 5.0), levels), {});
   EXPECT_NE(table.find("nothing of ours (ODE theirs: 2 of 2)"), std::string::npos) << table;
 }
 
 TEST(Tradeoff, NothingToCompareIsAnEmptyPage) {
   const std::vector<double> levels = {1e-4};
-  EXPECT_TRUE(level_scores({}, levels, 1.0).empty());
+  EXPECT_TRUE(level_scores({}, levels).empty());
   EXPECT_TRUE(level_profiles({}, 1e-4).empty());
   EXPECT_NE(tradeoff_markdown({}, {}, {}).find("# The trade"), std::string::npos);
   EXPECT_NE(pareto_svg({}, "t").find("</svg>"), std::string::npos);
