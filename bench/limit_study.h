@@ -1,7 +1,7 @@
 #pragma once
 
-#include "bench/limit_analysis.h"
 #include "bench/scene_player.h"
+#include "tools/limit_analysis.h"
 
 #include <functional>
 #include <iosfwd>

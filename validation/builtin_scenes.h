@@ -37,7 +37,7 @@ void check_free_flight(const Scene& scene, const RunOptions& options, SceneRepor
 void check_torque_free_spin(const Scene& scene, const RunOptions& options, SceneReport& report);
 void check_ball_drop(const Scene& scene, const RunOptions& options, SceneReport& report);
 void check_wedge(const Scene& scene, const RunOptions& options, SceneReport& report);
-void check_box_landing(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_flat_landing(const Scene& scene, const RunOptions& options, SceneReport& report);
 void check_slope(const Scene& scene, const RunOptions& options, SceneReport& report);
 void check_stack(const Scene& scene, const RunOptions& options, SceneReport& report);
 void check_mass_ratio(const Scene& scene, const RunOptions& options, SceneReport& report);
@@ -54,5 +54,12 @@ void check_tipping(const Scene& scene, const RunOptions& options, SceneReport& r
 void check_dominoes(const Scene& scene, const RunOptions& options, SceneReport& report);
 void check_dzhanibekov(const Scene& scene, const RunOptions& options, SceneReport& report);
 void check_elastic_grid(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_ball_columns(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_masonry_stands(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_masonry_falls(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_wrecking_ball(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_gears(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_vehicle(const Scene& scene, const RunOptions& options, SceneReport& report);
+void check_painleve_rod(const Scene& scene, const RunOptions& options, SceneReport& report);
 
 }  // namespace signorini::validation

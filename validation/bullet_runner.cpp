@@ -1,3 +1,4 @@
+#include <signorini/validation/bullet_file.h>
 #include <signorini/validation/bullet_runner.h>
 #include <signorini/validation/bullet_world.h>
 #include <signorini/validation/scene_contacts.h>
@@ -32,6 +33,9 @@ bool is_finite(const std::vector<BodySample>& sample) {
 
 Track run_bullet(const Scene& scene, const BulletProfile& profile, const StopFlag* stop,
                  const StepWatcher& watch) {
+#ifdef SIGNORINI_HAS_BULLET_FILES
+  if (scene.is_bullet_file) return run_bullet_file(scene, stop);
+#endif
   BulletWorld world(scene, profile);
   SceneContacts ruler(scene);
   Track track;

@@ -14,6 +14,7 @@ namespace signorini::validation {
 /// of Bullet's product. Not for two threads at once: Bullet's material hook is global.
 /// @param stop null, or a flag that ends the run early (Track::interrupted)
 /// @param watch empty, or told after every step
+/// A scene from a .bullet file is run as the file says (bullet_file.h).
 /// @throws InputError for a kinematic body, which no scene file can hold
 [[nodiscard]] Track run_bullet(const Scene& scene, const BulletProfile& profile,
                                const StopFlag* stop = nullptr, const StepWatcher& watch = nullptr);

@@ -22,5 +22,7 @@ void check_generic(const Scene& scene, const RunOptions& options, SceneReport& r
 /// The energy check and the overlap check alone, for scenes that have closed forms as well.
 void add_energy_check(const Scene& scene, const Runs& runs, SceneReport& report);
 void add_overlap_check(const Scene& scene, const Runs& runs, SceneReport& report);
+/// "greatest error of a joint", over all samples.
+void add_joint_check(const Scene& scene, const Runs& runs, SceneReport& report);
 
 }  // namespace signorini::validation

@@ -198,7 +198,8 @@ std::string scene_file_name(const Report& report, std::size_t index) {
                        character == '-' || character == '.' || character == '_';
     name += plain ? character : '_';
   }
-  return fmt::format("scenes/{:02}-{}.sdf", index + 1, name);
+  const bool is_bullet = report.scenes[index].source.ends_with(".bullet");
+  return fmt::format("scenes/{:02}-{}.{}", index + 1, name, is_bullet ? "bullet" : "sdf");
 }
 
 std::string report_json(const Report& report) {

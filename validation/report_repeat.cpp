@@ -1,4 +1,5 @@
 #include <signorini/validation/builtin_scenes.h>
+#include <signorini/validation/bullet_file.h>
 #include <signorini/validation/drop_in.h>
 #include <signorini/validation/input_error.h>
 #include <signorini/validation/report_json.h>
@@ -70,7 +71,7 @@ SceneReport repeat_scene(const std::filesystem::path& folder, const Json& json,
   const std::string source = json.at("source");
   const std::string name = json.at("name");
   if (!json.at("builtin").get<bool>()) {
-    Scene scene = read_scene_text(text, source, {arguments.skip_unsupported, arguments.ground});
+    Scene scene = read_any_scene_text(text, source, {arguments.skip_unsupported, arguments.ground});
     return validate_scene(std::move(scene), options);
   }
   if (const DropInScene* drop_in = find_drop_in_scene(name)) {

@@ -60,6 +60,8 @@ void validate(const Scene& scene) {
   require(std::isfinite(scene.duration) && scene.duration > 0.0, scene,
           fmt::format("duration: must be finite and > 0 s, got {}", scene.duration));
   require(scene.gravity.allFinite(), scene, "<gravity>: must be finite");
+  require(scene.stepper == Stepper::kTime || scene.joints.empty(), scene,
+          "<signorini:stepper>: the event-driven stepper takes no joints");
   try {
     for (const Body& body : scene.bodies) signorini::validate(body);
     signorini::validate(scene.bodies, scene.state);
@@ -106,6 +108,14 @@ std::string to_string(PairingRule rule) {
     case PairingRule::kMean: return "mean";
   }
   throw std::invalid_argument("pairing rule: not one of the four rules");
+}
+
+std::string to_string(Stepper stepper) {
+  switch (stepper) {
+    case Stepper::kTime: return "time-stepping";
+    case Stepper::kEvents: return "event-driven";
+  }
+  throw std::invalid_argument("stepper: not one of the two");
 }
 
 }  // namespace signorini::validation

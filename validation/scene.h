@@ -13,13 +13,20 @@
 
 namespace signorini::validation {
 
+/// Who of ours runs a scene.
+enum class Stepper : unsigned char {
+  kTime,    ///< TimeStepper: fixed steps
+  kEvents,  ///< EventStepper: from event to event; the scene's step is that of what is recorded
+};
+
 /// What is simulated, whoever simulates it. Plain data; SI units, world axes.
 struct Scene {
-  std::string name;         ///< short, usable in a file name
-  std::string title;        ///< for people
-  std::string description;  ///< a paragraph
-  std::string source;       ///< the file, or what stands for it
-  std::string text;         ///< of that file, as it was read
+  std::string name;             ///< short, usable in a file name
+  std::string title;            ///< for people
+  std::string description;      ///< a paragraph
+  std::string source;           ///< the file, or what stands for it
+  std::string text;             ///< of that file, as it was read
+  bool is_bullet_file = false;  ///< text is a .bullet file, whose own world Bullet runs
   Bodies bodies;
   State state;  ///< at t = 0
   std::vector<collision::Collider> colliders;
@@ -37,6 +44,7 @@ struct Scene {
   std::string kind;
   /// The name of the check whose error stands for the scene; empty: none does.
   std::string error;
+  Stepper stepper = Stepper::kTime;
   double error_scale = 1.0;  ///< > 0: an error of this size is a wholly wrong answer; its unit
 
   /// Steps that cover the duration: the nearest whole number to duration / step, at least 1.
@@ -56,5 +64,7 @@ void validate(const Scene& scene);
 [[nodiscard]] std::vector<std::string> describe_pairs(const Scene& scene);
 
 [[nodiscard]] std::string to_string(PairingRule rule);
+/// "time-stepping", "event-driven".
+[[nodiscard]] std::string to_string(Stepper stepper);
 
 }  // namespace signorini::validation

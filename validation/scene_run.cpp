@@ -1,5 +1,6 @@
 #include <signorini/validation/bullet_runner.h>
 #include <signorini/validation/checks.h>
+#include <signorini/validation/event_runner.h>
 #include <signorini/validation/scene_playback.h>
 #include <signorini/validation/scene_run.h>
 #include <signorini/validation/signorini_runner.h>
@@ -19,6 +20,20 @@ std::string endings_text(const Track& track) {
     line += fmt::format("{}{} {}", line.empty() ? "" : ", ", count, status);
   }
   return line;
+}
+
+void say_if_stopped(const Scene& scene, const Track& track, SceneReport& report) {
+  if (!track.interrupted) return;
+  report.notices.push_back(fmt::format("stopped: the run of {} ended after {} of {} steps",
+                                       track.engine, track.steps, scene.step_count()));
+}
+
+void check_broken(const Track& track, SceneReport& report) {
+  report.checks.push_back(at_most({.name = kBrokenRuns,
+                                   .reference = "definition",
+                                   .unit = "1",
+                                   .reason = "no NaN and no infinity"},
+                                  track.broke_down ? 1.0 : 0.0, 0.0));
 }
 
 void check_every_step(const Track& track, UnsolvedSteps unsolved, SceneReport& report) {
@@ -41,17 +56,63 @@ void check_every_step(const Track& track, UnsolvedSteps unsolved, SceneReport& r
   const auto failed = static_cast<double>(track.unsolved_projections);
   report.checks.push_back(unsolved == UnsolvedSteps::kFail ? at_most(projections, failed, 0.0)
                                                            : shown(projections, failed, 0.0));
-  report.checks.push_back(at_most({.name = kBrokenRuns,
-                                   .reference = "definition",
-                                   .unit = "1",
-                                   .reason = "no NaN and no infinity"},
-                                  track.broke_down ? 1.0 : 0.0, 0.0));
+  check_broken(track, report);
 }
 
-void say_if_stopped(const Scene& scene, const Track& track, SceneReport& report) {
-  if (!track.interrupted) return;
-  report.notices.push_back(fmt::format("stopped: the run of {} ended after {} of {} steps",
-                                       track.engine, track.steps, scene.step_count()));
+/// What the event-driven stepper met, and that it came to the end.
+void report_events(const Scene& scene, const Track& track, SceneReport& report) {
+  report.settings.push_back(
+      fmt::format("Signorini: {} records: {}", track.steps, endings_text(track)));
+  constexpr std::size_t kMostRows = 100;
+  Table table;
+  table.title = fmt::format("Events ({})", track.events.size());
+  table.header = {"time [s]", "event", "bodies", "speed [m/s]", "problem of the forces"};
+  for (const Event& event : track.events) {
+    if (table.rows.size() == kMostRows) break;
+    table.rows.push_back({text(event.time), std::string(to_string(event.kind)),
+                          scene.bodies[event.body_a].name + " / " + scene.bodies[event.body_b].name,
+                          text(event.speed),
+                          event.forces_status == lcp::Status::kNotRun
+                              ? "-"
+                              : std::string(lcp::to_string(event.forces_status))});
+  }
+  report.tables.push_back(std::move(table));
+  report.checks.push_back(
+      at_most({.name = kUnsolvedSteps,
+               .reference = "certificate",
+               .unit = "1",
+               .reason = "every impact and every problem of resting forces must be certified" +
+                         (track.first_unsolved.empty() ? "" : "; not: " + track.first_unsolved)},
+              static_cast<double>(track.unsolved_steps), 0.0));
+  check_broken(track, report);
+}
+
+bool runs_by_events(const Scene& scene, const RunOptions& options) {
+  const Stepper without_choice = options.accuracy ? Stepper::kTime : scene.stepper;
+  return options.stepper.value_or(without_choice) == Stepper::kEvents;
+}
+
+/// Our run, with what the report says of its settings and steps.
+Track run_and_report_ours(const Scene& scene, const RunOptions& options, SceneReport& report,
+                          UnsolvedSteps unsolved) {
+  if (runs_by_events(scene, options)) {
+    const EventSettings settings = event_settings(scene);
+    append(describe(settings), report.settings);
+    Track track = run_by_events(scene, settings, options.stop, options.watch);
+    if (track.interrupted && !options.keep_stopped) throw RunInterrupted{};
+    say_if_stopped(scene, track, report);
+    report_events(scene, track, report);
+    return track;
+  }
+  const TimeStepSettings settings = step_settings(scene);
+  append(describe(settings), report.settings);
+  if (options.accuracy) {
+    report.settings.push_back("Signorini: accuracy " + options.accuracy->name());
+  }
+  Track track = run_ours(scene, settings, options);
+  say_if_stopped(scene, track, report);
+  check_every_step(track, unsolved, report);
+  return track;
 }
 
 Series series_of(const Track& track, const Measure& measure) {
@@ -98,16 +159,9 @@ Runs run_engines(const Scene& scene, const RunOptions& options, SceneReport& rep
                                         scene.step_count(), to_string(scene.rule)));
   append(describe_pairs(scene), report.settings);
   if (options.signorini) {
-    const TimeStepSettings settings = step_settings(scene);
-    append(describe(settings), report.settings);
-    if (options.accuracy) {
-      report.settings.push_back("Signorini: accuracy " + options.accuracy->name());
-    }
-    runs.signorini = run_ours(scene, settings, options);
+    runs.signorini = run_and_report_ours(scene, options, report, unsolved);
     report.signorini_seconds = runs.signorini->wall_seconds;
     report.signorini_solver_seconds = runs.signorini->solver_seconds;
-    say_if_stopped(scene, *runs.signorini, report);
-    check_every_step(*runs.signorini, unsolved, report);
   }
   if (options.bullet && !(runs.signorini && runs.signorini->interrupted)) {
     append(options.profile.describe(), report.settings);

@@ -22,6 +22,8 @@ struct RunOptions {
   BulletProfile profile = BulletProfile::neutral();
   /// Of our runs, by the dial; none: step_settings() as they are.
   std::optional<Accuracy> accuracy = std::nullopt;
+  /// Of our runs; none: the scene's own, or time stepping where the dial is given.
+  std::optional<Stepper> stepper = std::nullopt;
   const StopFlag* stop = nullptr;
   StepWatcher watch = nullptr;  ///< empty: nobody watches
   bool keep_stopped = false;    ///< a run that was stopped is kept, shorter, as it is

@@ -192,6 +192,9 @@ class SceneBuilder {
     if (const auto e = world.FindElement("signorini:kind"); e != nullptr) {
       scene_.kind = kind(squeezed(e->GetValue()->GetAsString()), *e);
     }
+    if (const auto e = world.FindElement("signorini:stepper"); e != nullptr) {
+      scene_.stepper = stepper(squeezed(e->GetValue()->GetAsString()), *e);
+    }
     if (const auto e = world.FindElement("signorini:pairing"); e != nullptr) {
       scene_.rule = pairing_rule(squeezed(e->GetValue()->GetAsString()), *e);
     }
@@ -202,6 +205,15 @@ class SceneBuilder {
     if (std::find(kinds.begin(), kinds.end(), word) != kinds.end()) return word;
     throw InputError(survey_.locate(where) +
                      ": <signorini:kind>: must be stands, slides, bounces or free, got '" + word +
+                     "'");
+  }
+
+  Stepper stepper(const std::string& word, const sdf::Element& where) {
+    for (const Stepper one : {Stepper::kTime, Stepper::kEvents}) {
+      if (to_string(one) == word) return one;
+    }
+    throw InputError(survey_.locate(where) +
+                     ": <signorini:stepper>: must be time-stepping or event-driven, got '" + word +
                      "'");
   }
 

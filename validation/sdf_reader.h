@@ -37,6 +37,7 @@ struct ReadOptions {
 ///                 <signorini:error> (the name of the check whose error stands for the scene),
 ///                 <signorini:error_scale> (> 0: an error of this size is wholly wrong),
 ///                 <signorini:kind> stands | slides | bounces | free
+///                 <signorini:stepper> time-stepping | event-driven (who of ours runs it)
 ///     in <link>   <signorini:linear_velocity> (of the centre of mass, m/s, world axes),
 ///                 <signorini:angular_velocity> (rad/s, world axes)
 ///

@@ -68,9 +68,9 @@ constexpr std::array<std::string_view, 16> kUsed = {"pose",
 constexpr std::array<std::string_view, 7> kUsedOfJoints = {
     "parent", "child", "xyz", "lower", "upper", "damping", "spring_stiffness"};
 
-constexpr std::array<std::string_view, 7> kWorldExtensions = {
+constexpr std::array<std::string_view, 8> kWorldExtensions = {
     "signorini:title",       "signorini:description", "signorini:duration", "signorini:pairing",
-    "signorini:error_scale", "signorini:error",       "signorini:kind"};
+    "signorini:error_scale", "signorini:error",       "signorini:kind",     "signorini:stepper"};
 constexpr std::array<std::string_view, 2> kLinkExtensions = {"signorini:linear_velocity",
                                                              "signorini:angular_velocity"};
 

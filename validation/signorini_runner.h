@@ -11,7 +11,7 @@
 
 namespace signorini::validation {
 
-/// The settings a scene is run with: TimeStepSettings' defaults, the scene's step and gravity.
+/// TimeStepSettings' defaults, the scene's step and gravity; more than 12 moving bodies: cones.
 [[nodiscard]] TimeStepSettings step_settings(const Scene& scene);
 
 /// Runs the scene with collision::CollisionWorld and TimeStepper. A step whose contact problem is

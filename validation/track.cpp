@@ -8,7 +8,8 @@ namespace {
 
 constexpr double kMostBodySamples = 2e6;
 constexpr double kMostFrames = 300.0;
-constexpr double kMostFrameBodySamples = 3e5;
+constexpr double kMostFrameBodySamples = 1.2e4;
+constexpr double kFewestFrames = 30.0;
 
 /// As a state, so that the energies are core's own.
 State to_state(const Bodies& bodies, const std::vector<BodySample>& sample) {
@@ -22,6 +23,21 @@ State to_state(const Bodies& bodies, const std::vector<BodySample>& sample) {
 }
 
 }  // namespace
+
+std::vector<BodySample> sample_of(const Bodies& bodies, const State& state) {
+  std::vector<BodySample> sample(bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    sample[i] = {state[i].pose(), velocity(bodies[i], state[i])};
+  }
+  return sample;
+}
+
+bool is_finite(const State& state) {
+  return std::all_of(state.begin(), state.end(), [](const BodyState& body) {
+    return body.x.allFinite() && body.q.coeffs().allFinite() && body.p.allFinite() &&
+           body.L.allFinite();
+  });
+}
 
 double Track::deepest_overlap() const {
   return overlap.empty() ? 0.0 : *std::max_element(overlap.begin(), overlap.end());
@@ -87,7 +103,7 @@ long recording_stride(long steps, std::size_t body_count) {
 long frame_stride(long steps, std::size_t body_count) {
   const long stride = recording_stride(steps, body_count);
   const double count = static_cast<double>(std::max<std::size_t>(1, body_count));
-  const double frames = std::clamp(kMostFrameBodySamples / count, 2.0, kMostFrames);
+  const double frames = std::clamp(kMostFrameBodySamples / count, kFewestFrames, kMostFrames);
   const double records = static_cast<double>(steps) / static_cast<double>(stride);
   return stride * std::max(1L, static_cast<long>(std::ceil(records / frames)));
 }

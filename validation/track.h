@@ -1,6 +1,7 @@
 #pragma once
 
 #include <signorini/core/model/body.h>
+#include <signorini/core/response/event_stepper.h>
 
 #include <cstddef>
 #include <limits>
@@ -16,6 +17,11 @@ struct BodySample {
   Pose pose;
   Velocity velocity;
 };
+
+/// A state of ours as a track records it.
+[[nodiscard]] std::vector<BodySample> sample_of(const Bodies& bodies, const State& state);
+/// Is every number of it finite?
+[[nodiscard]] bool is_finite(const State& state);
 
 /// A contact of one step, as the engine solved it.
 struct ContactSample {
@@ -47,6 +53,7 @@ struct Track {
   std::map<std::string, long> endings;  ///< how the contact problems of the steps ended (ours)
   long unsolved_steps = 0;              ///< steps whose contact problem was not solved
   std::string first_unsolved;           ///< when and why the first of them was not
+  std::vector<Event> events;            ///< of the event-driven stepper; times from the start
   long unsolved_projections = 0;        ///< position projections that were not solved (ours)
   double impulse = 0.0;  ///< sum of the sizes of all contacts' and joints' impulses (ours), N s
   double projection_energy = 0.0;  ///< sum of the potential energy changes by projection (ours), J
@@ -101,7 +108,7 @@ class TrackRecorder {
 
 /// The stride that keeps a track within about 2 million body samples.
 [[nodiscard]] long recording_stride(long steps, std::size_t body_count);
-/// A multiple of it that keeps playback within 300 frames and about 300,000 body samples.
+/// A multiple of it that keeps playback within 300 frames, and 12,000 body samples or 30 frames.
 [[nodiscard]] long frame_stride(long steps, std::size_t body_count);
 
 }  // namespace signorini::validation

@@ -2,6 +2,7 @@
 
 #include <signorini/lcp/solve_recorder.h>
 #include <signorini/validation/builtin_scenes.h>
+#include <signorini/validation/bullet_file.h>
 #include <signorini/validation/bullet_runner.h>
 #include <signorini/validation/drop_in.h>
 #include <signorini/validation/input_error.h>
@@ -66,8 +67,9 @@ struct Job {
 };
 
 void declare(CLI::App& app, Arguments& arguments) {
-  app.add_option("SCENE", arguments.scenes,
-                 "SDFormat or URDF files, or names of built-in scenes; default: all built-in ones");
+  app.add_option(
+      "SCENE", arguments.scenes,
+      "SDFormat, URDF or .bullet files, or names of built-in scenes; default: all built-in ones");
   app.add_option("--engine", arguments.run.engine, "signorini, bullet or both")
       ->check(CLI::IsMember({"signorini", "bullet", "both"}))
       ->capture_default_str();
@@ -134,7 +136,7 @@ std::vector<Job> load_jobs(const Arguments& arguments) {
       const bool terminal = isatty(STDOUT_FILENO) != 0 && signorini::tools::is_first_rank();
       if (terminal) fmt::print("reading {} ...", name);
       std::fflush(stdout);
-      jobs.back().scene = read_scene_file(name, options);
+      jobs.back().scene = read_any_scene_file(name, options);
       if (terminal) fmt::print("\r\x1b[K");
     }
   }

@@ -232,6 +232,15 @@ INSTANTIATE_TEST_SUITE_P(
                  box_model("<signorini:linear_velocity>1 0 0</signorini:linear_velocity>", "",
                            "<static>true</static>"),
                  {"link 'body'", "static"}},
+        BadInput{"unknown_stepper",
+                 "<signorini:stepper>verlet</signorini:stepper>" + box_model(""),
+                 {"<signorini:stepper>", "verlet"}},
+        BadInput{"events_with_joints",
+                 "<signorini:stepper>event-driven</signorini:stepper>" +
+                     box_model("", "",
+                               "<joint name=\"j\" type=\"ball\"><parent>world</parent>"
+                               "<child>body</child></joint>"),
+                 {"<signorini:stepper>", "joints"}},
         BadInput{"unknown_pairing",
                  "<signorini:pairing>sum</signorini:pairing>" + box_model(""),
                  {"<signorini:pairing>", "sum"}},

@@ -10,38 +10,6 @@
 namespace signorini::validation {
 namespace {
 
-/// The greatest distance of the anchors of any joint, over all samples, m.
-double greatest_joint_error(const Scene& scene, const Track& track) {
-  double most = 0.0;
-  State state = scene.state;
-  for (const std::vector<BodySample>& sample : track.bodies) {
-    for (std::size_t i = 0; i < state.size(); ++i) {
-      state[i].x = sample[i].pose.position;
-      state[i].q = sample[i].pose.orientation;
-    }
-    for (const Joint& joint : scene.joints) {
-      const double error = joint_error(joint, state).position.norm();
-      most = std::isnan(error) ? error : std::max(most, error);
-    }
-  }
-  return most;
-}
-
-void add_joint_check(const Scene& scene, const Runs& runs, SceneReport& report) {
-  runs.for_each([&](const Track& track) {
-    const CheckText text{.name = "greatest error of a joint",
-                         .engine = track.engine,
-                         .unit = "m",
-                         .reason =
-                             "the projection of every step closes each coordinate of a "
-                             "joint to 1e-10 m"};
-    const double error = greatest_joint_error(scene, track);
-    report.checks.push_back(track.engine == "signorini"
-                                ? absolute(text, error, 0.0, std::sqrt(3.0) * kToleratedJointError)
-                                : shown(text, error, 0.0));
-  });
-}
-
 /// The arithmetic-geometric mean of 1 and x.
 double agm(double x) {
   double a = 1.0;

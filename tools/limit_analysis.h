@@ -3,7 +3,7 @@
 #include <signorini/core/model/body.h>
 #include <signorini/core/model/contact.h>
 
-namespace signorini::bench {
+namespace signorini {
 
 /// Limit analysis of a structure in a plane (Livesley, "Limit analysis of structures formed from
 /// rigid blocks", International Journal for Numerical Methods in Engineering 12, 1978): whether
@@ -32,4 +32,4 @@ struct LimitAnalysis {
                                               const ContactSet& contacts, const Vec3& gravity,
                                               const Vec3& across);
 
-}  // namespace signorini::bench
+}  // namespace signorini

@@ -1,4 +1,4 @@
-#include "bench/limit_analysis.h"
+#include "tools/limit_analysis.h"
 
 #include <signorini/core/response/tangent_rows.h>
 
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace signorini::bench {
+namespace signorini {
 namespace {
 
 constexpr double kResolution = 1e-9;  // of mu
@@ -152,4 +152,4 @@ LimitAnalysis critical_friction(const Bodies& bodies, const State& state,
   return limit;
 }
 
-}  // namespace signorini::bench
+}  // namespace signorini
