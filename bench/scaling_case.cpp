@@ -262,29 +262,39 @@ Audit audit(const ScalingScene& scaling, const ScalingRunOptions& options) {
 class StepTimes {
  public:
   void add(double step, const StageSeconds& stages, double find) {
-    step_.push_back(step);
     const double wall = stages.find + stages.solve + stages.project;
-    if (const double delay = wall / step; delay < least_delay_) {
-      least_delay_ = delay;
-      undisturbed_ = stages;
-      rest_ = std::max(0.0, wall - find - stages.assemble - stages.solvers - stages.move);
-    }
+    steps_.push_back({step, wall / step, stages,
+                      std::max(0.0, wall - find - stages.assemble - stages.solvers - stages.move)});
   }
   void write(bool with_stages, ScalingCosts& costs) const {
-    costs.step = median(step_);
-    if (with_stages) {
-      costs.rows = undisturbed_.assemble;
-      costs.solvers = undisturbed_.solvers;
-      costs.move = undisturbed_.move;
-      costs.rest = rest_;
+    std::vector<double> seconds;
+    for (const Step& step : steps_) {
+      seconds.push_back(step.seconds);
     }
+    costs.step = median(seconds);
+    if (!with_stages) {
+      return;
+    }
+    const Step* chosen = nullptr;
+    for (const Step& step : steps_) {
+      if (step.seconds >= costs.step && (chosen == nullptr || step.delay < chosen->delay)) {
+        chosen = &step;
+      }
+    }
+    costs.rows = chosen->stages.assemble;
+    costs.solvers = chosen->stages.solvers;
+    costs.move = chosen->stages.move;
+    costs.rest = chosen->rest;
   }
 
  private:
-  std::vector<double> step_;
-  double least_delay_ = std::numeric_limits<double>::infinity();
-  StageSeconds undisturbed_;  // of the step with the least wall time for its CPU time
-  double rest_ = 0.0;
+  struct Step {
+    double seconds;
+    double delay;  // wall over CPU time: how much others had the processor
+    StageSeconds stages;
+    double rest;
+  };
+  std::vector<Step> steps_;
 };
 
 /// The timed run with so many threads: CPU time on one, wall time on more.

@@ -51,8 +51,8 @@ struct ScalingCosts {
   // detection is that of the first step: all pairs are asked.
   double broad = kUnknown;   ///< CollisionWorld: bounds and pairs, the lesser of its two find()s
   double narrow = kUnknown;  ///< CollisionWorld: contacts of the pairs, likewise
-  // The parts of one step after it: that with the least wall time for its CPU time, since they are
-  // wall times and others have the processor too.
+  // The parts of one step after it: of those of at least median cost that with the least wall time
+  // for its CPU time, since they are wall times and others have the processor too.
   double rows = kUnknown;           ///< assembly
   double solvers = kUnknown;        ///< problems solved and certified
   double move = kUnknown;           ///< integration
