@@ -36,10 +36,14 @@ struct Contestant {
   std::string name;
   std::function<std::unique_ptr<ScenePlayer>(const SteppedScene& scene)> start;
   bool is_ours = true;
+  bool is_event_driven = false;  ///< for scenes of few contacts: those that name an error
 };
 
 /// Our time stepper with these settings but for the step.
 [[nodiscard]] Contestant our_stepper(const std::string& name, const TimeStepSettings& settings);
+/// Our event-driven stepper with its defaults: generalized reflections, energy-safe. It has no
+/// step: a step is as much time, whatever happens in it.
+[[nodiscard]] Contestant our_event_stepper();
 /// Bullet in double precision: its defaults, sleeping off, with this many iterations of its
 /// sequential impulses.
 [[nodiscard]] Contestant bullet_stepper(int iterations);

@@ -9,6 +9,14 @@
 
 namespace signorini::bench {
 
+/// What an engine says of a scene at one time.
+struct Moment {
+  State poses;  ///< momenta are left out
+  std::vector<Velocity> velocities;
+};
+/// A run: the start and every step.
+using Course = std::vector<Moment>;
+
 /// A scene that two engines step. SI units, z up; body 0 is the ground, whose top is z = 0.
 struct SteppedScene {
   std::string name;
@@ -22,6 +30,10 @@ struct SteppedScene {
   int watched = 1;           ///< the body whose drift is measured: the top one
   /// Where the watched body should be, from its start, after so many seconds; m. Empty: there.
   std::function<Vec3(double time)> path = {};
+  /// What a whole run errs by, where that is not the drift of the watched body. Such a scene is as
+  /// long as its error needs, and one for the event-driven stepper too.
+  std::function<double(const Course& course)> error = {};
+  std::string error_name = "drift m";
 };
 
 /// The ground is a box of this half edge: a plane of Bullet's makes one contact with a box.

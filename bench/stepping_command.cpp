@@ -2,7 +2,7 @@
 
 #include "bench/extremes_study.h"
 #include "bench/job_options.h"
-#include "bench/stacks_study.h"
+#include "bench/work_precision.h"
 #include "bench/write_csv.h"
 
 #include <CLI/CLI.hpp>
@@ -19,25 +19,10 @@ constexpr int kClaimsHold = 0;
 constexpr int kWrongClaim = 1;
 constexpr int kInterrupted = 130;
 
-std::vector<Contestant> contestants() {
-  std::vector<Contestant> all;
-  for (const char* position : {"preview", "game", "engineering", "reference"}) {
-    TimeStepSettings settings;
-    settings.accuracy = Accuracy::named(position);
-    all.push_back(our_stepper(std::string("signorini, ") + position, settings));
-  }
-#ifdef SIGNORINI_PEER_BULLET
-  for (const int iterations : {10, 50, 200, 1000}) {
-    all.push_back(bullet_stepper(iterations));
-  }
-#endif
-  return all;
-}
-
 }  // namespace
 
 struct SteppingCommand::Options {
-  StacksOptions stacks;
+  WorkPrecisionOptions work_precision;
   ExtremesOptions extremes;
   JobOptions jobs;
   std::string out;
@@ -45,17 +30,22 @@ struct SteppingCommand::Options {
 
 SteppingCommand::SteppingCommand(CLI::App& app) : options_(std::make_unique<Options>()) {
   Options& o = *options_;
-  stacks_ =
-      app.add_subcommand("stacks",
-                         "Stacks, a pyramid, heavy on light, slopes, a rolling ball: error against "
-                         "step time for every "
-                         "position of the dial and Bullet with 10, 50, 200 and 1000 iterations");
-  stacks_->add_option("--seconds", o.stacks.seconds, "Of each run of ours (default: the scene's)")
+  work_precision_ = app.add_subcommand(
+      "work-precision",
+      "Stacks, a pyramid, heavy on light, slopes, a rolling ball, a card house, an "
+      "arch, landings, a cradle, bounces and 216 elastic balls: error against step "
+      "time for every position of the dial, the event-driven stepper and Bullet "
+      "with 10, 50, 200 and 1000 iterations");
+  work_precision_
+      ->add_option("--seconds", o.work_precision.seconds,
+                   "Of each run of ours of what should stand (default: the scene's)")
       ->check(CLI::PositiveNumber);
-  stacks_->add_option("--bullet-seconds", o.stacks.bullet_seconds, "Of each run of Bullet's")
+  work_precision_
+      ->add_option("--bullet-seconds", o.work_precision.bullet_seconds, "The same of Bullet's")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  stacks_->add_option("--scene", o.stacks.scene, "Only scenes whose names contain this");
+  work_precision_->add_option("--scene", o.work_precision.scene,
+                              "Only scenes whose names contain this");
   extremes_ = app.add_subcommand(
       "extremes",
       "Mass ratios, sizes, steps, speeds, restitution, friction, heights, redundant and nearly "
@@ -67,7 +57,7 @@ SteppingCommand::SteppingCommand(CLI::App& app) : options_(std::make_unique<Opti
   extremes_->add_option("--contestant", o.extremes.contestant,
                         "Only solvers and engines whose names contain this");
   o.jobs.add_to(*extremes_);
-  for (CLI::App* study : {stacks_, extremes_}) {
+  for (CLI::App* study : {work_precision_, extremes_}) {
     study->add_option("--out", o.out,
                       "Folder for " + study->get_name() +
                           ".csv, made if absent (default: print "
@@ -78,7 +68,7 @@ SteppingCommand::SteppingCommand(CLI::App& app) : options_(std::make_unique<Opti
 SteppingCommand::~SteppingCommand() = default;
 
 bool SteppingCommand::is_asked() const {
-  return stacks_->parsed() || extremes_->parsed();
+  return work_precision_->parsed() || extremes_->parsed();
 }
 
 int SteppingCommand::run_extremes() const {
@@ -107,9 +97,9 @@ int SteppingCommand::run() const {
   if (extremes_->parsed()) {
     return run_extremes();
   }
-  const StacksReport report =
-      run_stacks_study(options_->stacks, stacks_scenes(), contestants(), std::cout);
-  write_csv(options_->out, "stacks", report.to_csv());
+  const WorkPrecisionReport report = run_work_precision(
+      options_->work_precision, work_precision_scenes(), work_precision_contestants(), std::cout);
+  write_csv(options_->out, "work-precision", report.to_csv());
   return report.passed() ? kClaimsHold : kWrongClaim;
 }
 

@@ -5,7 +5,7 @@
 
 namespace signorini::bench {
 
-/// The studies of stepping: `signorini-bench stacks` and `extremes`.
+/// The studies of stepping: `signorini-bench work-precision` and `extremes`.
 class SteppingCommand {
  public:
   explicit SteppingCommand(CLI::App& app);
@@ -20,7 +20,7 @@ class SteppingCommand {
   [[nodiscard]] int run_extremes() const;
 
   std::unique_ptr<Options> options_;
-  CLI::App* stacks_;
+  CLI::App* work_precision_;
   CLI::App* extremes_;
 };
 

@@ -2,7 +2,8 @@
 #include <signorini/core/response/time_stepper.h>
 
 #include "bench/extremes_study.h"
-#include "bench/stacks_study.h"
+#include "bench/impact_scenes.h"
+#include "bench/work_precision.h"
 
 #include <gtest/gtest.h>
 #include <limits>
@@ -14,32 +15,32 @@
 namespace signorini::bench {
 namespace {
 
-TEST(StacksStudy, AStackStandsAndIsSolvedAtEveryStep) {
+TEST(WorkPrecision, AStackStandsAndIsSolvedAtEveryStep) {
   TimeStepSettings settings;
   settings.friction_model = FrictionModel::kCone;
   settings.solver = "auto";
   std::ostringstream out;
-  const StacksReport report =
-      run_stacks_study({}, {stack_scene(12, 1.0 / 60.0, 0.5), heavy_scene(1e6, 1.0 / 60.0, 0.5)},
-                       {our_stepper("ours", settings)}, out);
+  const WorkPrecisionReport report =
+      run_work_precision({}, {stack_scene(12, 1.0 / 60.0, 0.5), heavy_scene(1e6, 1.0 / 60.0, 0.5)},
+                         {our_stepper("ours", settings)}, out);
   EXPECT_TRUE(report.passed()) << out.str();
   ASSERT_EQ(report.rows.size(), 2U);
-  for (const StacksRow& row : report.rows) {
-    EXPECT_LT(row.drift, 1e-8) << row.scene;
+  for (const WorkPrecisionRow& row : report.rows) {
+    EXPECT_LT(row.error, 1e-8) << row.scene;
     EXPECT_LT(row.penetration, 1e-9) << row.scene;
   }
   EXPECT_NE(report.to_csv().find("stack of 12"), std::string::npos);
 }
 
-TEST(StacksStudy, EveryPositionOfTheDialSolvesAPyramid) {
+TEST(WorkPrecision, EveryPositionOfTheDialSolvesAPyramid) {
   for (const char* position : {"preview", "game", "engineering", "reference"}) {
     TimeStepSettings settings;
     settings.accuracy = Accuracy::named(position);
     std::ostringstream out;
-    const StacksReport report = run_stacks_study({}, {pyramid_scene(10, 1.0 / 60.0, 0.5)},
-                                                 {our_stepper(position, settings)}, out);
+    const WorkPrecisionReport report = run_work_precision({}, {pyramid_scene(10, 1.0 / 60.0, 0.5)},
+                                                          {our_stepper(position, settings)}, out);
     EXPECT_TRUE(report.passed()) << out.str();
-    EXPECT_LT(report.rows.at(0).drift, 1e-8) << position;
+    EXPECT_LT(report.rows.at(0).error, 1e-8) << position;
   }
 }
 
@@ -98,15 +99,15 @@ double drift_of(const SteppedScene& scene) {
   TimeStepSettings settings;
   settings.accuracy = Accuracy::engineering();
   std::ostringstream out;
-  StacksOptions options;
+  WorkPrecisionOptions options;
   options.seconds = 1.0;
-  const StacksReport report =
-      run_stacks_study(options, {scene}, {our_stepper("ours", settings)}, out);
+  const WorkPrecisionReport report =
+      run_work_precision(options, {scene}, {our_stepper("ours", settings)}, out);
   EXPECT_TRUE(report.passed()) << out.str();
-  return report.rows.at(0).drift;
+  return report.rows.at(0).error;
 }
 
-TEST(StacksStudy, ASlabStaysOrSlidesAndABallRollsAsTheyShould) {
+TEST(WorkPrecision, ASlabStaysOrSlidesAndABallRollsAsTheyShould) {
   EXPECT_LT(drift_of(slope_scene(0.45, 1.0 / 60.0, 1.0)), 1e-8);
   EXPECT_LT(drift_of(slope_scene(1.0, 1.0 / 60.0, 1.0)), 1e-7);
   const double coarse = drift_of(rolling_scene(1.0 / 60.0, 1.0));
@@ -116,6 +117,57 @@ TEST(StacksStudy, ASlabStaysOrSlidesAndABallRollsAsTheyShould) {
   SteppedScene elsewhere = slope_scene(1.0, 1.0 / 60.0, 1.0);
   elsewhere.path = {};
   EXPECT_GT(drift_of(elsewhere), 1.0);  // it does slide
+}
+
+double error_of(const SteppedScene& scene, const Contestant& contestant) {
+  std::ostringstream out;
+  const WorkPrecisionReport report = run_work_precision({}, {scene}, {contestant}, out);
+  EXPECT_TRUE(report.passed()) << out.str();
+  return report.rows.at(0).error;
+}
+
+TEST(WorkPrecision, ImpactsComeOutAsTheyShouldOfTheEventDrivenStepper) {
+  const Contestant events = our_event_stepper();
+  EXPECT_LT(error_of(landing_scene(0.5, 1.0 / 60.0), events), 1e-12);
+  EXPECT_LT(error_of(cradle_scene(1.0 / 60.0), events), 1e-9);
+  EXPECT_LT(error_of(bounce_scene(0.9, 1.0 / 60.0), events), 1e-6);
+  EXPECT_LT(error_of(elastic_balls_scene(3, 1.0 / 60.0), events), 1e-9);
+}
+
+TEST(WorkPrecision, ImpactsOfTheTimeStepperAreThoseOfItsLaw) {
+  TimeStepSettings settings;
+  settings.accuracy = Accuracy::engineering();
+  const Contestant ours = our_stepper("ours", settings);
+  EXPECT_LT(error_of(landing_scene(0.5, 1.0 / 60.0), ours), 1e-12);
+  EXPECT_NEAR(error_of(cradle_scene(1.0 / 60.0), ours), 0.6, 1e-8);  // Newton's: 2/5, not 1
+  const double coarse = error_of(bounce_scene(0.9, 1.0 / 60.0), ours);
+  EXPECT_GT(coarse, 1e-6);
+  EXPECT_LT(coarse, 0.2);
+  EXPECT_LT(error_of(bounce_scene(0.9, 1.0 / 480.0), ours), 0.5 * coarse);  // first order
+}
+
+TEST(WorkPrecision, AScenesOwnErrorKnowsAWrongRun) {
+  const auto course_of = [](const SteppedScene& scene) {
+    std::vector<Velocity> velocities(scene.bodies.size());
+    return Course(3, Moment{scene.state, velocities});
+  };
+  const SteppedScene landing = landing_scene(0.0, 1.0 / 60.0);
+  Course turning = course_of(landing);
+  EXPECT_EQ(landing.error(turning), 0.0);
+  turning[1].velocities[1].angular.x() = 0.25;
+  EXPECT_EQ(landing.error(turning), 0.25);
+  const SteppedScene bounce = bounce_scene(0.5, 1.0 / 60.0);
+  EXPECT_EQ(bounce.error(course_of(bounce)), 1.0);  // no apex
+  Course parabola = course_of(bounce);
+  for (int k = 0; k < 3; ++k) {
+    parabola[k].poses[1].x.z() = 0.5 + 0.25 - 0.01 * std::pow(k - 1.25, 2);
+  }
+  EXPECT_EQ(bounce.error(parabola), 1.0);  // the first apex is right, the others are missing
+  const SteppedScene balls = elastic_balls_scene(2, 1.0 / 60.0);
+  Course slower = course_of(balls);
+  for (Moment& moment : slower) moment.velocities[1].linear.x() = 2.0;
+  slower[2].velocities[1].linear.x() = 1.0;
+  EXPECT_NEAR(balls.error(slower), 0.75, 1e-15);
 }
 
 /// The first and the last value of every axis up to a mass ratio of 1e4, stacks up to 30.
