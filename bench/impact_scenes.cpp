@@ -80,7 +80,7 @@ SteppedScene landing_scene(double restitution, double step) {
   SteppedScene scene =
       ground(fmt::format("flat landing, e = {:g}", restitution), material, step, 2.0);
   add_box(Vec3::Constant(0.5), 1.0, Vec3(0.0, 0.0, 1.0), material, scene);
-  scene.error_name = "|w| rad/s";
+  scene.error_name = "spin rad/s";
   scene.error = greatest_spin;
   return scene;
 }

@@ -1,6 +1,8 @@
 #include <signorini/core/response/assembly.h>
 #include <signorini/core/response/single_impulse.h>
 
+#include <algorithm>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -11,31 +13,52 @@ namespace {
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-/// -1 for bodies without a row, 0 for the others.
-void mark_bodies_with_rows(const Bodies& bodies, const ContactSet& contacts,
-                           const BodyPairs& joined, std::vector<int>& has_row) {
-  has_row.assign(bodies.size(), -1);
-  const auto mark = [&](int body) {
+constexpr int kNoRow = -1;
+constexpr int kMoves = 3;  // columns
+constexpr int kTurns = 6;
+
+/// Whether a force at the point along N turns the body, see BodyColumns: |r x N|^2/J_min > eps/m,
+/// with the bound J_min >= 4 det J/(tr J)^2, so that it may say yes where the answer is no.
+bool turns(const Body& body, const BodyState& state, const Vec3& point, const Vec3& normal) {
+  const double turned = (point - state.x).cross(normal).squaredNorm();
+  const double trace = body.inertia.trace();
+  return turned * body.mass * trace * trace >
+         4.0 * std::numeric_limits<double>::epsilon() * body.inertia.determinant();
+}
+
+/// kNoRow, kMoves or kTurns of every body.
+void count_columns(const Bodies& bodies, const State& state, const ContactSet& contacts,
+                   const BodyPairs& joined, BodyColumns columns, std::vector<int>& count) {
+  count.assign(bodies.size(), kNoRow);
+  const auto mark = [&](int body, int needs) {
     if (bodies[body].is_dynamic()) {
-      has_row[body] = 0;
+      count[body] = std::max(count[body], needs);
     }
   };
+  const auto needs = [&](const Contact& contact, int body, const Vec3& point) {
+    const bool six = columns == BodyColumns::kSix || contact.material.friction > 0.0 ||
+                     count[body] == kTurns || !bodies[body].is_dynamic();
+    return six || turns(bodies[body], state[body], point, contact.normal) ? kTurns : kMoves;
+  };
   for (const Contact& contact : contacts) {
-    mark(contact.body_a);
-    mark(contact.body_b);
+    mark(contact.body_a, needs(contact, contact.body_a, contact.point_a));
+    mark(contact.body_b, needs(contact, contact.body_b, contact.point_b));
   }
   for (const auto& [a, b] : joined) {
-    mark(a);
-    mark(b);
+    mark(a, kTurns);
+    mark(b, kTurns);
   }
 }
 
-/// blockdiag(I / m, J^-1).
-Mat6 inverse_mass_block(const Body& body, const BodyState& state) {
+/// blockdiag(I / m, J^-1), or its first three columns and rows.
+int add_inverse_mass(const Body& body, const BodyState& state, int columns, lcp::BlockMass& mass) {
   Mat6 block = Mat6::Zero();
   block.topLeftCorner<3, 3>().diagonal().setConstant(inverse_mass(body));
+  if (columns == kMoves) {
+    return mass.add_inverse(block.topLeftCorner<3, 3>());
+  }
   block.bottomRightCorner<3, 3>() = inverse_inertia_world(body, state);
-  return block;
+  return mass.add_inverse(block);
 }
 
 int find_root(std::vector<int>& parent, int i) {
@@ -112,13 +135,14 @@ void check_dynamic(const Bodies& bodies, const ContactSet& contacts) {
 }
 
 void start_rows(const Bodies& bodies, const State& state, const ContactSet& contacts,
-                NormalRows& rows, const BodyPairs& joined) {
+                NormalRows& rows, const BodyPairs& joined, BodyColumns columns) {
   check_dynamic(bodies, contacts);
   rows.A.clear();
-  mark_bodies_with_rows(bodies, contacts, joined, rows.block_of_body);
+  count_columns(bodies, state, contacts, joined, columns, rows.block_of_body);
   for (std::size_t k = 0; k < bodies.size(); ++k) {
-    if (rows.block_of_body[k] == 0) {
-      rows.block_of_body[k] = rows.A.mass.add_inverse(inverse_mass_block(bodies[k], state[k]));
+    int& block = rows.block_of_body[k];
+    if (block != kNoRow) {
+      block = add_inverse_mass(bodies[k], state[k], block, rows.A.mass);
     }
   }
 }
@@ -126,11 +150,17 @@ void start_rows(const Bodies& bodies, const State& state, const ContactSet& cont
 void add_row(const State& state, const Contact& contact, const Vec3& direction, const Vec3& point_a,
              const Vec3& point_b, NormalRows& rows) {
   const auto add_body = [&](int body, const Vec3& along, const Vec3& point) {
-    if (rows.block_of_body[body] >= 0) {
-      Vec6 values;
-      values << along, (point - state[body].x).cross(along);
-      rows.A.add_entry(rows.block_of_body[body], values);
+    const int block = rows.block_of_body[body];
+    if (block == kNoRow) {
+      return;
     }
+    if (rows.A.mass.dimension(block) == kMoves) {
+      rows.A.add_entry(block, along);
+      return;
+    }
+    Vec6 values;
+    values << along, (point - state[body].x).cross(along);
+    rows.A.add_entry(block, values);
   };
   rows.A.add_row();
   add_body(contact.body_a, direction, point_a);
@@ -138,8 +168,8 @@ void add_row(const State& state, const Contact& contact, const Vec3& direction, 
 }
 
 void assemble_normals(const Bodies& bodies, const State& state, const ContactSet& contacts,
-                      NormalRows& rows, const BodyPairs& joined) {
-  start_rows(bodies, state, contacts, rows, joined);
+                      NormalRows& rows, const BodyPairs& joined, BodyColumns columns) {
+  start_rows(bodies, state, contacts, rows, joined, columns);
   for (const Contact& contact : contacts) {
     add_row(state, contact, contact.normal, contact.point_a, contact.point_b, rows);
   }

@@ -4,6 +4,7 @@
 #include <signorini/core/model/contact.h>
 #include <signorini/lcp/factored_matrix.h>
 
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -12,11 +13,20 @@ namespace signorini {
 /// Two bodies each: what connects bodies, contact or joint.
 using BodyPairs = std::vector<std::pair<int, int>>;
 
+/// How many columns of J a body has: its block in M^-1.
+enum class BodyColumns : std::uint8_t {
+  kSix,
+  /// 3, of v alone, where no contact can turn it: where each of the body's has no friction and acts
+  /// along a line through its centre of mass, as far as rounding tells: what
+  /// (r x N).J^-1 (r x N) adds to 1/m is lost in it. Else 6, and for every body that is joined.
+  kThatForcesReach,
+};
+
 /// The normal rows of a contact set: d'+ = A f + d'-, A = J M^-1 J^T with row i of J
 /// [N, r_A x N, -N, -(r_B x N)] over the dynamic bodies (r_A = P_A - x_A, r_B = P_B - x_B).
 /// Immovable and driven bodies have no block; their velocity is in d'-.
 struct NormalRows {
-  lcp::FactoredMatrix A;           ///< 1/kg; one block of 6 a dynamic body that has a contact
+  lcp::FactoredMatrix A;           ///< 1/kg; one block a dynamic body that has a contact
   lcp::Vector d_dot;               ///< d'-, m/s
   std::vector<int> block_of_body;  ///< -1 for bodies without a row
 };
@@ -41,23 +51,25 @@ void gap_velocities(const std::vector<Velocity>& velocities, const State& state,
 /// @throws std::invalid_argument naming the contact if neither of its bodies is dynamic.
 void check_dynamic(const Bodies& bodies, const ContactSet& contacts);
 
-/// Forgets what rows held and adds a block of 6 for every dynamic body of the contacts and of the
-/// pairs `joined`; no rows.
+/// Forgets what rows held and adds a block for every dynamic body of the contacts and of the pairs
+/// `joined`; no rows.
 /// @throws std::invalid_argument as check_dynamic(); rows is then untouched.
 void start_rows(const Bodies& bodies, const State& state, const ContactSet& contacts,
-                NormalRows& rows, const BodyPairs& joined = {});
+                NormalRows& rows, const BodyPairs& joined = {},
+                BodyColumns columns = BodyColumns::kSix);
 /// Adds the row [t, r_A x t, -t, -(r_B x t)] of one contact, r_A = point_a - x_A, to A.
-/// @param direction t, unit. d_dot is left alone
+/// @param direction t, unit; of a body of 3 columns, as above. d_dot is left alone
 void add_row(const State& state, const Contact& contact, const Vec3& direction, const Vec3& point_a,
              const Vec3& point_b, NormalRows& rows);
 
 /// Assembles the rows of all contacts. Cost: O(bodies + contacts).
 /// @param bodies, state, contacts valid: see validate() of each
-/// @param joined as start_rows()
+/// @param joined, columns as start_rows()
 /// @throws std::invalid_argument if a contact joins two bodies of which neither is dynamic; rows is
 /// then untouched.
 void assemble_normals(const Bodies& bodies, const State& state, const ContactSet& contacts,
-                      NormalRows& rows, const BodyPairs& joined = {});
+                      NormalRows& rows, const BodyPairs& joined = {},
+                      BodyColumns columns = BodyColumns::kSix);
 
 /// d'+ = A f + d'-, in m/s, for f in N s (with d'' and N: the same).
 [[nodiscard]] lcp::Vector gap_velocities_after(const NormalRows& rows, const lcp::VectorRef& f);

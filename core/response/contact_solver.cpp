@@ -143,7 +143,7 @@ void ContactSolver::collect(std::size_t number, const ContactIsland& island) {
   const IslandAnswer& answer = answers_[number];
   const lcp::Result& result = answer.result;
   IslandReport& told = fresh_.islands[number];
-  describe(island, answer.velocity.problem(), result, friction_model(), told);
+  describe(island, answer.velocity, result, friction_model(), told);
   told.work = answer.work;
   fresh_.work += answer.work;
   const bool usable = result.z.allFinite();

@@ -8,7 +8,7 @@ namespace signorini {
 
 void assemble_cones(const Bodies& bodies, const State& free_state, const ContactSet& contacts,
                     const lcp::VectorRef& allowance, ConeProblem& out,
-                    std::span<const JointRow> joints) {
+                    std::span<const JointRow> joints, BodyColumns columns) {
   if (allowance.size() != static_cast<lcp::Index>(contacts.size())) {
     throw std::invalid_argument("allowance: must have one number a contact (" +
                                 std::to_string(contacts.size()) + "), got " +
@@ -29,7 +29,8 @@ void assemble_cones(const Bodies& bodies, const State& free_state, const Contact
   }
   fresh.memory.joined.clear();
   add_body_pairs(joints, fresh.memory.joined);
-  start_rows(bodies, free_state, contacts, rows, fresh.memory.joined);
+  start_rows(bodies, free_state, contacts, rows, fresh.memory.joined, columns);
+  fresh.columns = rows.A.degrees_of_freedom();
   lcp::Index size = static_cast<lcp::Index>(contacts.size() + joints.size());
   for (const Contact& contact : contacts) {
     size += contact.material.friction > 0.0 ? 2 : 0;

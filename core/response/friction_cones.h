@@ -23,6 +23,7 @@ struct ConeProblem {
   std::vector<int> normal_row;       ///< of each contact
   std::vector<TangentFrame> frames;  ///< of each contact; used where mu > 0
   std::vector<double> friction;      ///< mu of each contact
+  int columns = 0;                   ///< of J
   /// What assembling needs beside its outcome, kept from step to step.
   struct Memory {
     std::vector<Velocity> velocities;  // of the bodies
@@ -40,11 +41,12 @@ struct ConeProblem {
 /// chooses the frames
 /// @param allowance one a contact, m/s: how fast the gap may close, or, negative, must open
 /// @param joints rows with these bodies' numbers
+/// @param columns as start_rows()
 /// @throws std::invalid_argument if neither body of a contact is dynamic or an allowance is
 /// missing; out is then untouched.
 void assemble_cones(const Bodies& bodies, const State& free_state, const ContactSet& contacts,
                     const lcp::VectorRef& allowance, ConeProblem& out,
-                    std::span<const JointRow> joints = {});
+                    std::span<const JointRow> joints = {}, BodyColumns columns = BodyColumns::kSix);
 
 /// f of every contact, N s.
 [[nodiscard]] lcp::Vector normal_impulses(const ConeProblem& cones, const lcp::VectorRef& z);

@@ -102,12 +102,13 @@ void check_arguments(const ContactSet& contacts, const lcp::VectorRef& allowance
 
 void assemble_pyramid(const Bodies& bodies, const State& free_state, const ContactSet& contacts,
                       const lcp::VectorRef& allowance, int sides, PyramidProblem& out,
-                      std::span<const JointRow> joints) {
+                      std::span<const JointRow> joints, BodyColumns columns) {
   check_arguments(contacts, allowance, sides);
   NormalRows rows;
   BodyPairs joined;
   add_body_pairs(joints, joined);
-  assemble_normals(bodies, free_state, contacts, rows, joined);
+  assemble_normals(bodies, free_state, contacts, rows, joined, columns);
+  out.columns = rows.A.degrees_of_freedom();
   const int normals = static_cast<int>(contacts.size());
   out.sides = sides;
   out.frictional.clear();

@@ -35,6 +35,7 @@ struct PyramidProblem {
   std::vector<int> frictional;       ///< the m contacts with mu > 0, ascending
   std::vector<TangentFrame> frames;  ///< of those
   int sides = 0;                     ///< k
+  int columns = 0;                   ///< of J
 };
 
 /// Assembles the problem. Cost: O(n + the sum over the bodies of (k m on the body)^2).
@@ -43,11 +44,13 @@ struct PyramidProblem {
 /// it must open
 /// @param sides k, even, >= 4
 /// @param joints rows with these bodies' numbers
+/// @param columns as start_rows()
 /// @throws std::invalid_argument if neither body of a contact is dynamic, an allowance is missing,
 /// or `sides` is odd or less than 4; out is then untouched.
 void assemble_pyramid(const Bodies& bodies, const State& free_state, const ContactSet& contacts,
                       const lcp::VectorRef& allowance, int sides, PyramidProblem& out,
-                      std::span<const JointRow> joints = {});
+                      std::span<const JointRow> joints = {},
+                      BodyColumns columns = BodyColumns::kSix);
 
 /// The impulse of every contact on its body A, world axes, N s: f N + sum_j beta_j t_j.
 void contact_impulses(const PyramidProblem& pyramid, const ContactSet& contacts,

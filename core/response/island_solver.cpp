@@ -268,14 +268,16 @@ bool is_worse(const lcp::Result& result, const lcp::Result& than) {
   return solved && result.certificate.unit_free_residual > than.certificate.unit_free_residual;
 }
 
-void describe(const ContactIsland& island, const lcp::Problem& problem, const lcp::Result& result,
-              FrictionModel model, IslandReport& report) {
+void describe(const ContactIsland& island, const VelocityProblem& velocity,
+              const lcp::Result& result, FrictionModel model, IslandReport& report) {
+  const lcp::Problem& problem = velocity.problem();
   const std::size_t frictionless_rows = island.contacts.size() + island.joints.size();
   const bool friction = problem.size() > static_cast<lcp::Index>(frictionless_rows);
   report.joint_rows = static_cast<int>(island.joints.size());
   report.bodies = static_cast<int>(std::ranges::count_if(island.bodies, &Body::is_dynamic));
   report.contacts = static_cast<int>(island.contacts.size());
   report.rows = static_cast<int>(problem.size());
+  report.columns = velocity.columns();
   report.model = report.contacts == 1 && report.joint_rows == 0 ? "single contact, " : "";
   report.model += friction ? to_string(model) : "frictionless";
   if (model == FrictionModel::kCone && !problem.limits.empty()) {

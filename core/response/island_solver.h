@@ -116,8 +116,8 @@ class IslandSolver {
 };
 
 /// What was solved for an island, and how well.
-void describe(const ContactIsland& island, const lcp::Problem& problem, const lcp::Result& result,
-              FrictionModel model, IslandReport& report);
+void describe(const ContactIsland& island, const VelocityProblem& velocity,
+              const lcp::Result& result, FrictionModel model, IslandReport& report);
 
 /// Whether the result of an island is worse than that of another: not solved before solved, then by
 /// the unit-free residual.

@@ -33,6 +33,7 @@ std::string to_text(const StepReport& report) {
       " contacts about to bounce, " + std::to_string(report.contacts_apart) +
       " contacts apart (put back: " + std::to_string(report.contacts_put_back) + "), " +
       std::to_string(report.tangents_left_out) + " tangents without friction, " +
+      std::to_string(report.rotations_left_out) + " rotations of bodies that nothing can turn, " +
       std::to_string(report.dynamic_bodies_without_rows) + " bodies without contact\n";
   if (report.bodies_asleep + report.bodies_woken > 0) {
     text += std::to_string(report.bodies_asleep) +

@@ -16,6 +16,7 @@ struct IslandReport {
   int contacts = 0;    ///< rows of normals
   int joint_rows = 0;  ///< those of joints
   int rows = 0;        ///< of the problem
+  int columns = 0;     ///< of its J: 6 a body, 3 where no contact can turn it
   std::string model;   ///< "frictionless", or the friction model; "single contact, " before it
   std::string solver;
   lcp::Status status = lcp::Status::kNotRun;
@@ -61,6 +62,7 @@ struct StepReport {
   int bodies_woken = 0;        ///< in this step
   double energy_asleep = 0.0;  ///< kinetic energy that bodies lost by falling asleep, J
   int tangents_left_out = 0;   ///< tangential rows not made: contacts without friction
+  int rotations_left_out = 0;  ///< bodies with rows that none of them can turn: 3 columns, not 6
   int dynamic_bodies_without_rows = 0;
   double kinetic_energy = 0.0;        ///< after the step, J
   double potential_energy = 0.0;      ///< after the step, J

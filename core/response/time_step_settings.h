@@ -61,8 +61,8 @@ struct TimeStepSettings {
   /// Bodies asleep have no rows, no forces and do not move; the finder is told nothing of it (a
   /// CollisionWorld asks no pair that stands still).
   SleepSettings sleep = {};
-  /// Every contact found has its rows, and all islands are one problem: what the reduced model is
-  /// checked against.
+  /// Every contact found has its rows, every body of theirs six columns, and all islands are one
+  /// problem: what the reduced model is checked against.
   bool full_model = false;
 
   /// @throws std::invalid_argument naming field, value and bound.

@@ -210,8 +210,10 @@ void TimeStepper::solve_islands(std::span<const ContactIsland> islands, const St
       answer.contacts.push_back(report.contacts[i]);
     }
     Stopwatch watch;
-    answer.velocity.assemble(friction_model(), island.bodies, island.state, island.contacts,
-                             island.allowance, settings_.pyramid_sides, island.joints);
+    answer.velocity.assemble(
+        friction_model(), island.bodies, island.state, island.contacts, island.allowance,
+        settings_.pyramid_sides, island.joints,
+        settings_.full_model ? BodyColumns::kSix : BodyColumns::kThatForcesReach);
     answer.assemble_seconds = watch.lap();
     const double share = static_cast<double>(island_sizes_[k]) / contacts_and_joints;
     solver.solve(island.joints, memory, settings_.budget.share(share), answer);
@@ -224,7 +226,7 @@ void TimeStepper::solve_islands(std::span<const ContactIsland> islands, const St
   report.island_of.assign(report.contacts.size(), -1);
   report.joints.assign(joints_.size(), {});
   report.islands.resize(islands.size());
-  report.rows = report.joint_rows = report.tangents_left_out = 0;
+  report.rows = report.joint_rows = report.tangents_left_out = report.rotations_left_out = 0;
   report.dynamic_bodies_without_rows = dynamic_bodies(bodies_);
   report.status = lcp::Status::kSolved;
   next_memory_.forget();
@@ -252,11 +254,12 @@ void TimeStepper::collect(int number, const ContactIsland& island, const State& 
   const IslandAnswer& answer = answers_[number];
   const lcp::Result& result = answer.result;
   IslandReport& told = report.islands[number];
-  describe(island, answer.velocity.problem(), result, friction_model(), told);
+  describe(island, answer.velocity, result, friction_model(), told);
   told.work = answer.work;
   report.work += answer.work;
   report.rows += told.rows;
   report.joint_rows += told.joint_rows;
+  report.rotations_left_out += 2 * told.bodies - told.columns / 3;
   report.dynamic_bodies_without_rows -= told.bodies;
   for (const int i : island.members) {
     report.island_of[i] = number;

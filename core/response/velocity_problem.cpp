@@ -45,7 +45,7 @@ std::string_view to_string(FrictionModel model) {
 
 void VelocityProblem::assemble(FrictionModel model, const Bodies& bodies, const State& free_state,
                                const ContactSet& contacts, const lcp::VectorRef& allowance,
-                               int sides, std::span<const JointRow> joints) {
+                               int sides, std::span<const JointRow> joints, BodyColumns columns) {
   contacts_ = static_cast<Eigen::Index>(contacts.size());
   joints_ = static_cast<Eigen::Index>(joints.size());
   turning_rows(bodies, free_state, contacts, turning_);
@@ -59,7 +59,7 @@ void VelocityProblem::assemble(FrictionModel model, const Bodies& bodies, const 
   }
   if (model == FrictionModel::kPyramid) {
     PyramidProblem pyramid;
-    assemble_pyramid(bodies, free_state, contacts, allowance, sides, pyramid, joints);
+    assemble_pyramid(bodies, free_state, contacts, allowance, sides, pyramid, joints, columns);
     form_ = std::move(pyramid);
     limit_turning();
     return;
@@ -68,7 +68,7 @@ void VelocityProblem::assemble(FrictionModel model, const Bodies& bodies, const 
   if (cones == nullptr) {
     cones = &form_.emplace<ConeProblem>();
   }
-  assemble_cones(bodies, free_state, contacts, allowance, *cones, joints);
+  assemble_cones(bodies, free_state, contacts, allowance, *cones, joints, columns);
   if (model == FrictionModel::kBox || !turning_.empty()) {
     make_box([&](int row) { return model == FrictionModel::kBox || has_turning(row, *cones); },
              *cones);
@@ -97,6 +97,10 @@ void VelocityProblem::limit_turning() {
 
 const lcp::Problem& VelocityProblem::problem() const {
   return std::visit([](const auto& form) -> const lcp::Problem& { return form.problem; }, form_);
+}
+
+int VelocityProblem::columns() const {
+  return std::visit([](const auto& form) { return form.columns; }, form_);
 }
 
 double VelocityProblem::normal_impulse(const lcp::VectorRef& z, std::size_t contact) const {

@@ -31,11 +31,15 @@ class VelocityProblem {
   /// @param joints rows with these bodies' numbers, behind all others in every model; those of
   /// rolling and spinning friction (turning_rows.h), with limits coupled to their normals, are
   /// before them
+  /// @param columns as start_rows()
   void assemble(FrictionModel model, const Bodies& bodies, const State& free_state,
                 const ContactSet& contacts, const lcp::VectorRef& allowance, int sides,
-                std::span<const JointRow> joints = {});
+                std::span<const JointRow> joints = {},
+                BodyColumns columns = BodyColumns::kThatForcesReach);
 
   [[nodiscard]] const lcp::Problem& problem() const;
+  /// Of J, over all bodies.
+  [[nodiscard]] int columns() const;
   /// f of a contact, N s.
   [[nodiscard]] double normal_impulse(const lcp::VectorRef& z, std::size_t contact) const;
   /// z of the joint rows.

@@ -1,10 +1,12 @@
 #include <signorini/core/response/accuracy.h>
+#include <signorini/core/response/assembly.h>
 #include <signorini/core/response/time_stepper.h>
 #include <signorini/lcp/solve_recorder.h>
 
 #include "../lcp/allocation_count.h"
 #include "plane_contacts.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
 #include <optional>
@@ -303,6 +305,69 @@ TEST(ReducedModel, PutsBackWhatTheSolveWouldClose) {
   EXPECT_EQ(report.contacts_put_back, 1);
   EXPECT_EQ(report.contacts_apart, 0);
   EXPECT_EQ(report.contacts.size(), 2u);
+}
+
+/// A heap of smooth balls, a smooth box that two of them lean on, and apart a ball with friction.
+struct SmoothHeap {
+  Bodies bodies{fixed_body()};
+  State state{at(Vec3::Zero())};
+  std::vector<TestBody> shapes;
+  PlaneContacts finder = fill();
+
+  PlaneContacts fill() {
+    const auto add = [&](const Body& body, const Vec3& x, const TestBody& shape) {
+      bodies.push_back(body);
+      state.push_back(at(x));
+      shapes.push_back(shape);
+    };
+    const double high = 0.5 + std::sqrt(2.0) / 2.0;
+    for (const double x : {0.0, 1.0}) {
+      for (const double y : {0.0, 1.0}) {
+        add(ball_body(1.0 + x, 0.5), Vec3(x, y, 0.5), {TestBall{0.5}, {0.0, 0.0}});
+      }
+    }
+    add(ball_body(7.0, 0.5), Vec3(0.5, 0.5, high), {TestBall{0.5}, {0.0, 0.0}});
+    add(ball_body(1.0, 0.5), Vec3(9.0, 0.0, 0.5), {TestBall{0.5}, {0.4, 0.0}});
+    add(box_body(1.0, kHalf), Vec3(0.0, 9.0, 0.2), {TestBox{kHalf}, {0.0, 0.0}});
+    state[1].L = Vec3(0.3, -0.2, 0.5);  // spins on
+    state[6].L = Vec3(0.0, 0.4, 0.0);   // is braked
+    PlaneContacts made(Vec3::UnitZ(), shapes);
+    for (int k = 1; k <= 4; ++k) {
+      made.pair_balls(5, k);
+    }
+    return made;
+  }
+};
+
+TEST(ReducedModel, HasNoColumnsOfRotationsThatNothingCanTurn) {
+  SmoothHeap heap;
+  StepReport report;
+  expect_same_velocities(heap.bodies, heap.state, heap.finder, report);
+  ASSERT_EQ(report.islands.size(), 3u);
+  EXPECT_EQ(report.islands[0].bodies, 5);
+  EXPECT_EQ(report.islands[0].columns, 15);
+  EXPECT_EQ(report.islands[1].columns, 6);  // friction turns it
+  EXPECT_EQ(report.islands[2].columns, 6);  // corners do
+  EXPECT_EQ(report.rotations_left_out, 5);
+  EXPECT_NE(to_text(report).find("5 rotations of bodies that nothing can turn"), std::string::npos);
+}
+
+TEST(ReducedModel, AFaintLeverKeepsItsColumns) {
+  // The centre of mass is off the line of the normal: little, but more than rounding tells.
+  for (const double lever : {0.0, 1e-12, 1e-5}) {
+    SmoothHeap heap;
+    ContactSet contacts;
+    heap.finder.find(heap.state, 0.01, contacts);
+    contacts.resize(1);
+    contacts[0].point_a += Vec3(lever, 0.0, 0.0);
+    NormalRows rows;
+    assemble_normals(heap.bodies, heap.state, contacts, rows, {}, BodyColumns::kThatForcesReach);
+    EXPECT_EQ(rows.A.degrees_of_freedom(), lever > 1e-8 ? 6 : 3) << lever;
+    rows.A.clear();
+    assemble_normals(heap.bodies, heap.state, contacts, rows, {{1, 2}},
+                     BodyColumns::kThatForcesReach);
+    EXPECT_EQ(rows.A.degrees_of_freedom(), 12);  // joined
+  }
 }
 
 TEST(ReducedModel, ALooseStackTakesThreeSolvesNotOneABox) {
