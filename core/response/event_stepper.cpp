@@ -7,6 +7,7 @@
 #include <signorini/core/response/segment_motion.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -27,6 +28,8 @@ constexpr double kShortestStabilizing = 0.01;
 constexpr double kStopping = 2.0;
 /// Shorter segments are not divided, s.
 constexpr double kShortest = 1e-10;
+/// How long a pair is passed over whose gap closes while its contacts separate, s.
+constexpr double kBlind = 1e-5;
 
 void require_positive(double value, const char* field, const char* unit) {
   if (!(value > 0.0) || !std::isfinite(value)) {
@@ -51,6 +54,14 @@ void EventSettings::validate() const {
   if (most_events < 1) {
     throw std::invalid_argument("event settings: most_events: must be >= 1, got " +
                                 std::to_string(most_events));
+  }
+  if (most_segments < 1) {
+    throw std::invalid_argument("event settings: most_segments: must be >= 1, got " +
+                                std::to_string(most_segments));
+  }
+  if (!(time_limit > 0.0)) {
+    throw std::invalid_argument("event settings: time_limit: must be > 0, got " +
+                                number_text(time_limit) + " s");
   }
   impact.validate(0);
   resting.validate();
@@ -101,8 +112,7 @@ class EventStepper::Run {
       } else if (!end_inconsistency()) {
         return;
       }
-      if (static_cast<int>(report_.events.size()) >= settings_.most_events) {
-        report_.status = lcp::Status::kIterationLimit;
+      if (is_out_of_bounds()) {
         return;
       }
       if (consistent) {
@@ -116,6 +126,23 @@ class EventStepper::Run {
   }
 
  private:
+  /// Whether a limit of the settings ends the run; the report then says which.
+  bool is_out_of_bounds() {
+    const auto end = [this](lcp::Status status, const char* which) {
+      report_.status = status;
+      report_.detail = std::string(which) + " at " + number_text(report_.time) + " s";
+      return true;
+    };
+    if (static_cast<int>(report_.events.size()) >= settings_.most_events) {
+      return end(lcp::Status::kIterationLimit, "most_events");
+    }
+    if (report_.segments >= settings_.most_segments) {
+      return end(lcp::Status::kIterationLimit, "most_segments");
+    }
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
+    return spent.count() > settings_.time_limit && end(lcp::Status::kTimeLimit, "time_limit");
+  }
+
   void find(const State& state) {
     contacts_.clear();
     finder_.find(state, settings_.touching, contacts_);
@@ -393,8 +420,7 @@ class EventStepper::Run {
   /// meets between them is found by bisection: forces of second order let them drift by more than
   /// the contact time's tolerance.
   double free_length(const std::vector<SegmentMotion>& motions, double length) {
-    const std::optional<FirstContact> first = first_contact(motions, length);
-    length = first ? std::max(first->time, kShortest) : length;
+    length = until_contact(motions, length);
     if (held_.empty() || !something_new_overlaps(motions, length)) {
       return length;
     }
@@ -405,6 +431,40 @@ class EventStepper::Run {
       (something_new_overlaps(motions, middle) ? met : free) = middle;
     }
     return std::max(met, kShortest);
+  }
+
+  double until_contact(const std::vector<SegmentMotion>& motions, double length) {
+    BodyPairs passed_over = resting_pairs();
+    for (;;) {
+      const std::optional<FirstContact> first = first_contact(motions, length, passed_over);
+      if (!first) {
+        return length;
+      }
+      if (first->time > kShortest) {
+        return first->time;
+      }
+      find(state_);
+      if (!separates(first->body_a, first->body_b)) {
+        return kShortest;
+      }
+      passed_over.push_back(std::minmax(first->body_a, first->body_b));
+      length = std::min(length, kBlind);
+      ++report_.blind_pairs;
+    }
+  }
+
+  /// Whether two bodies touch now and none of their contacts, those found last, approaches.
+  [[nodiscard]] bool separates(int body_a, int body_b) const {
+    bool touch = false;
+    for (const Contact& contact : contacts_) {
+      if (std::minmax(contact.body_a, contact.body_b) == std::minmax(body_a, body_b)) {
+        touch = true;
+        if (gap_velocity(bodies_, state_, contact) < 0.0) {
+          return false;
+        }
+      }
+    }
+    return touch;
   }
 
   /// Between bodies that rest on each other.
@@ -424,17 +484,22 @@ class EventStepper::Run {
   }
 
   [[nodiscard]] std::optional<FirstContact> first_contact(const std::vector<SegmentMotion>& motions,
-                                                          double length) const {
+                                                          double length,
+                                                          const BodyPairs& passed_over) const {
     std::vector<const Motion*> pointers;
     pointers.reserve(motions.size());
     for (const SegmentMotion& motion : motions) {
       pointers.push_back(&motion);
     }
-    BodyPairs resting;
+    return finder_.first_contact(pointers, length, passed_over);
+  }
+
+  [[nodiscard]] BodyPairs resting_pairs() const {
+    BodyPairs pairs;
     for (const RestingContact& held : held_) {
-      resting.push_back(std::minmax(held.contact.body_a, held.contact.body_b));
+      pairs.push_back(std::minmax(held.contact.body_a, held.contact.body_b));
     }
-    return finder_.first_contact(pointers, length, resting);
+    return pairs;
   }
 
   void finish_segment(double length, const std::vector<SegmentMotion>& motions) {
@@ -521,6 +586,7 @@ class EventStepper::Run {
   State& state_;
   double duration_;
   EventReport& report_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   double next_length_;
   ContactSet contacts_;   // touching, of the state looked at last
   Support support_;       // of the segment's start

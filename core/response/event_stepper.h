@@ -6,6 +6,7 @@
 #include <signorini/core/response/resting.h>
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,7 +42,11 @@ struct EventSettings {
   /// of resting contacts do not drift, and their forces hold the correction, g being off by about
   /// d/T^2 M; resting.slip_time is 2 segments.
   RestingSettings resting = {};
-  int most_events = 1000000;  ///< of one advance(), >= 1
+  int most_events = 1000000;   ///< of one advance(), >= 1
+  int most_segments = 100000;  ///< of one advance(), >= 1
+  /// Wall seconds of one advance(), looked at before each segment; > 0. A run that it ends is not
+  /// the same twice.
+  double time_limit = std::numeric_limits<double>::infinity();
 
   /// @throws std::invalid_argument naming field, value and bound.
   void validate() const;
@@ -78,13 +83,15 @@ struct Event {
 
 /// What EventStepper::advance() did.
 struct EventReport {
-  /// kSolved: the whole duration. kIterationLimit: most_events. Else the first impact or
+  /// kSolved: the whole duration. kIterationLimit: most_events or most_segments. kTimeLimit:
+  /// time_limit. Else the first impact or
   /// resting-force problem that was not solved (and was no inconsistent state); the state is that
   /// of `time`.
   lcp::Status status = lcp::Status::kNotRun;
   double time = 0.0;  ///< reached, s
   std::vector<Event> events;
   int segments = 0;      ///< pieces of motion
+  int blind_pairs = 0;   ///< pairs of bodies passed over, see EventStepper; of all segments
   int force_solves = 0;  ///< resting-force problems
   /// Of the last resting-force problem: contacts, g (N), and how many are indeterminate.
   ContactSet resting_contacts;
@@ -115,6 +122,10 @@ struct EventReport {
 ///    of other features at the segment's end, so that one that dips in and out unseen can be
 ///    missed), where a resting force that was > 0 becomes zero, where the slip of a sliding contact
 ///    turns back, and where one that sticks begins to slide, found by bisection.
+///
+/// Two bodies that overlap by rounding and slide over each other's edges can have contacts that
+/// separate while the gap closes: nothing to collide with, and a contact time of zero again and
+/// again. Such a pair is passed over for 1e-5 s, and counted (EventReport::blind_pairs).
 ///
 /// Free flight without torque is exact in x and p: apex heights are those of the parabola to the
 /// rounding of the contact time. Velocity errors of resting contacts are of second order in a

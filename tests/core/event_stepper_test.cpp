@@ -186,6 +186,28 @@ TEST(EventStepper, EndsAtTheMostEventsWithItsStatus) {
   EXPECT_NEAR(report.time, 5.0 * std::sqrt(2.0 / kG), 1e-8);
 }
 
+TEST(EventStepper, EndsAtTheMostSegmentsAndAtTheTimeLimitWithItsStatus) {
+  for (const bool by_time : {false, true}) {
+    World world;
+    world.add(scenes::ball(1.0, 0.5), Sphere{0.5}, Vec3(0, 0, 1e4), 1.0);
+    EventSettings settings;
+    settings.most_segments = by_time ? settings.most_segments : 3;
+    settings.time_limit = by_time ? 1e-9 : settings.time_limit;
+    CollisionWorld finder(world.scene.bodies, world.colliders, PairingRule::kMultiply);
+    EventStepper stepper(world.scene.bodies, finder, settings);
+    EventReport report;
+    stepper.advance(world.scene.state, 10.0, report);
+    EXPECT_EQ(report.status, by_time ? lcp::Status::kTimeLimit : lcp::Status::kIterationLimit);
+    EXPECT_EQ(report.segments, by_time ? 0 : 3);
+    EXPECT_NE(report.detail.find(by_time ? "time_limit at 0 s" : "most_segments at"),
+              std::string::npos)
+        << report.detail;
+    const double t = report.time;
+    EXPECT_LT(t, 1.0);
+    EXPECT_NEAR(world.scene.state[1].x.z(), 1e4 - 0.5 * kG * t * t, 1e-9);
+  }
+}
+
 TEST(EventStepper, BadInputIsNamed) {
   World world;
   world.add(scenes::ball(1.0, 0.5), Sphere{0.5}, Vec3(0, 0, 0.5), 0.0);
@@ -200,6 +222,8 @@ TEST(EventStepper, BadInputIsNamed) {
            [](EventSettings& s) { s.longest_segment = 0.0; },
            [](EventSettings& s) { s.sticking_speed = 0.0; },
            [](EventSettings& s) { s.most_events = 0; },
+           [](EventSettings& s) { s.most_segments = 0; },
+           [](EventSettings& s) { s.time_limit = 0.0; },
            [](EventSettings& s) { s.resting.friction_lcp.tolerance = std::nan(""); },
            [](EventSettings& s) { s.gravity.x() = std::nan(""); }}) {
     EventSettings bad;
