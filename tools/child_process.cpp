@@ -174,21 +174,29 @@ double cpu_seconds(pid_t process) {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// How much of its time a child has used since the start of a phase.
+/// How much of its time a child has used since the start of a phase. Wall time counts from when the
+/// child last computed, a thousandth of its time at least: one that gets little of the processor is
+/// not one that waits.
 class Allowance {
  public:
   Allowance(pid_t child, double seconds)
-      : child_(child), seconds_(seconds), start_(Clock::now()), cpu_start_(cpu_seconds(child)) {}
-  [[nodiscard]] bool is_used_up() const {
-    const std::chrono::duration<double> wall = Clock::now() - start_;
-    return cpu_seconds(child_) - cpu_start_ > seconds_ || wall.count() > kWallTimes * seconds_;
+      : child_(child), seconds_(seconds), cpu_start_(cpu_seconds(child)) {}
+  [[nodiscard]] bool is_used_up() {
+    const double used = cpu_seconds(child_) - cpu_start_;
+    if (used - used_then_ > 1e-3 * seconds_) {
+      used_then_ = used;
+      then_ = Clock::now();
+    }
+    const std::chrono::duration<double> waited = Clock::now() - then_;
+    return used > seconds_ || waited.count() > kWallTimes * seconds_;
   }
 
  private:
   pid_t child_;
   double seconds_;
-  Clock::time_point start_;
   double cpu_start_;
+  double used_then_ = 0.0;
+  Clock::time_point then_ = Clock::now();
 };
 
 /// Listens until the child has answered, ended or used up its time.

@@ -3,6 +3,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <gtest/gtest.h>
 #include <stdexcept>
 #include <unistd.h>
@@ -83,6 +84,22 @@ TEST(ChildProcess, AHangEndsAtItsTimeLimit) {
       {.seconds = 100.0, .loading_seconds = 0.2});
   EXPECT_EQ(loading.end, ChildEnd::kTimedOut);
   EXPECT_EQ(loading.reason, "time limit while loading");
+}
+
+TEST(ChildProcess, OneThatGetsLittleOfTheProcessorKeepsItsTime) {
+  const ChildAnswer child = run_in_child(
+      [](const Loaded&) -> std::string {
+        for (int k = 0; k < 4; ++k) {
+          const std::clock_t start = std::clock();
+          while (std::clock() - start < CLOCKS_PER_SEC / 1000) {
+          }
+          ::usleep(200000);
+        }
+        return "done";
+      },
+      {.loading_seconds = 0.1});  // 0.5 s of wall time, but for one that waits
+  EXPECT_EQ(child.end, ChildEnd::kAnswered) << child.reason;
+  EXPECT_EQ(child.answer, "done");
 }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
