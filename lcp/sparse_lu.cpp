@@ -14,8 +14,9 @@ void require_memory_of_lu(Index n, Index entries) {
   const std::int64_t upper = std::min<std::int64_t>(kFill * (entries + 1) / n, n) * n;
   const std::int64_t bytes = upper * (2 * 8 + 4) + kFill * (entries + 1) + n * kWorkOfARow +
                              kCopies * (entries * 12 + n * 8);
+  constexpr std::int64_t kApart = 1 << 20;  // one block here is many there, with ends of their own
   // By name: a new-expression that nobody uses may be left out.
-  ::operator delete(::operator new(static_cast<std::size_t>(bytes)));
+  ::operator delete(::operator new(static_cast<std::size_t>(bytes + bytes / 4 + kApart)));
 }
 
 void SparseLu::keep_order() {

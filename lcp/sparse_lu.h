@@ -10,9 +10,10 @@
 namespace signorini::lcp {
 
 /// Asks for what Eigen's SparseLU takes at first for an n x n matrix with so many entries (its
-/// memInit(), its copies of the matrix), and gives it back. Where memory ends within it Eigen 3.4
-/// writes through null and answers as if all were well; so it ends here. Not against what other
-/// threads take meanwhile, nor against fill far beyond the usual.
+/// memInit(), its copies of the matrix) and a quarter more, and gives it back. Where memory ends
+/// within it Eigen 3.4 writes through null and answers as if all were well, or frees a vector
+/// twice; so it ends here. Not against what other threads take meanwhile, nor against fill beyond
+/// Eigen's estimate (16 numbers an entry), for which it grows its vectors later.
 /// @throws std::bad_alloc
 void require_memory_of_lu(Index n, Index entries);
 

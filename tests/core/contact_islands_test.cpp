@@ -156,11 +156,11 @@ TEST(StepReport, SaysWhatWasMadeAndLeftOutAndHowEachIslandWasSolved) {
   EXPECT_EQ(report.islands[2].solver, "closed form");
   EXPECT_EQ(report.island_of, (std::vector<int>{0, 0, 0, 0, 1, 2}));
   const std::string text = to_text(report);
-  EXPECT_NE(
-      text.find(
-          "6 contacts, 3 islands, 16 rows; left out: 0 contacts about to bounce, 0 "
-          "contacts apart (put back: 0), 2 tangents without friction, 1 bodies without contact"),
-      std::string::npos)
+  EXPECT_NE(text.find("6 contacts, 3 islands, 16 rows; left out: 0 contacts about to bounce, 0 "
+                      "contacts apart (put back: 0), 2 tangents without friction, 1 rotations of "
+                      "bodies that nothing can turn, 1 bodies without "
+                      "contact"),
+            std::string::npos)
       << text;
   EXPECT_NE(
       text.find("island 2: 1 bodies, 1 contacts, 1 rows, single contact, frictionless, closed "
