@@ -12,7 +12,7 @@ namespace signorini::validation {
 namespace {
 
 constexpr std::size_t kMostTriangles = 20000;
-constexpr std::size_t kMostContacts = 8000;  // of a run
+constexpr std::size_t kMostContacts = 3000;  // of a run
 
 std::array<double, 3> numbers(const Vec3& v) {
   return {v.x(), v.y(), v.z()};

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kMostBodySamples = 2e6;
 constexpr double kMostFrames = 300.0;
-constexpr double kMostFrameBodySamples = 1.2e4;
+constexpr double kMostFrameBodySamples = 5e3;
 constexpr double kFewestFrames = 30.0;
 
 /// As a state, so that the energies are core's own.
