@@ -135,7 +135,9 @@ SteppedScene elastic_balls_scene(int edge, double step) {
     return 2.0 * (static_cast<double>(random() >> 11) * 0x1p-53) - 1.0;
   };
   for (int i = 0; i < edge * edge * edge; ++i) {
-    const Vec3 cell(i % edge, i / edge % edge, i / (edge * edge));
+    const int row = i / edge % edge;
+    const int layer = i / (edge * edge);
+    const Vec3 cell(i % edge, row, layer);
     const Vec3 off_centre = kSpacing * (cell - Vec3::Constant(0.5 * (edge - 1)));
     const double x = number();  // one after the other: the order is part of the scene
     const double y = number();

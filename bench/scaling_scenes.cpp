@@ -73,9 +73,10 @@ SteppedScene pile(int bodies) {
     const double radius = 0.475 + 0.025 * u(random);
     const Vec3 shift{u(random), u(random), 0.0};  // braces: drawn in this order
     const Vec3 turn{u(random), u(random), u(random)};
+    const int layer = k / (side * side);
     const Vec3 position =
         Vec3(in_row(cell % side, side, kSpacing), in_row(cell / side, side, kSpacing), 0.5) +
-        kShift * shift + Vec3(0.0, 0.0, kLayer * (k / (side * side)));
+        kShift * shift + Vec3(0.0, 0.0, kLayer * layer);
     if (k % 2 == 0) {
       add_body(collision::Sphere{radius}, 1.0, 0.4 * radius * radius * Mat3::Identity(), position,
                kSurface, scene);

@@ -58,6 +58,7 @@ bool has_bullet(const ScalingOptions& options) {
 
 std::vector<double> bandwidths(const std::vector<int>& threads) {
   std::vector<double> all;
+  all.reserve(threads.size());
   for (const int count : threads) {
     all.push_back(measure_memory_bandwidth(count));
   }
