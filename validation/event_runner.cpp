@@ -26,6 +26,7 @@ std::vector<ContactSample> contacts_of(const EventReport& report) {
 /// @param start of the advance, s
 void take_events(const EventReport& report, double start, Track& track) {
   ++track.endings[std::string(lcp::to_string(report.status))];
+  track.blind_pairs += report.blind_pairs;
   for (Event event : report.events) {
     event.time += start;
     track.events.push_back(event);

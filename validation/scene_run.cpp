@@ -63,9 +63,17 @@ void check_every_step(const Track& track, UnsolvedSteps unsolved, SceneReport& r
 void report_events(const Scene& scene, const Track& track, SceneReport& report) {
   report.settings.push_back(
       fmt::format("Signorini: {} records: {}", track.steps, endings_text(track)));
+  if (track.blind_pairs > 0) {
+    report.notices.push_back(
+        fmt::format("{} times a pair of bodies whose gap closed while its contacts separated was "
+                    "passed over for 1e-5 s",
+                    track.blind_pairs));
+  }
   constexpr std::size_t kMostRows = 100;
   Table table;
-  table.title = fmt::format("Events ({})", track.events.size());
+  table.title =
+      fmt::format("Events ({}{})", track.events.size(),
+                  track.events.size() > kMostRows ? fmt::format(", the first {}", kMostRows) : "");
   table.header = {"time [s]", "event", "bodies", "speed [m/s]", "problem of the forces"};
   for (const Event& event : track.events) {
     if (table.rows.size() == kMostRows) break;

@@ -54,6 +54,7 @@ struct Track {
   long unsolved_steps = 0;              ///< steps whose contact problem was not solved
   std::string first_unsolved;           ///< when and why the first of them was not
   std::vector<Event> events;            ///< of the event-driven stepper; times from the start
+  int blind_pairs = 0;                  ///< that it passed over, see EventReport
   long unsolved_projections = 0;        ///< position projections that were not solved (ours)
   double impulse = 0.0;  ///< sum of the sizes of all contacts' and joints' impulses (ours), N s
   double projection_energy = 0.0;  ///< sum of the potential energy changes by projection (ours), J

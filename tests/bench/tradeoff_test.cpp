@@ -112,20 +112,22 @@ TEST(Tradeoff, AProfileOfAPartialStudyHasTheProblemsThatEverybodyTried) {
   EXPECT_EQ(profile_curves(panels[0]).size(), 3u);
 }
 
+/// Of one problem.
+TradeRun run_of(const std::string& solver, double error, double seconds) {
+  return {.problem = "p",
+          .which = {"stands", 16, "bodies"},
+          .solver = solver,
+          .library = "Signorini",
+          .error = error,
+          .seconds = seconds,
+          .limit_seconds = 5.0};
+}
+
 TEST(Tradeoff, OfWhatIsAsFastTheMoreAccurateIsRecommended) {
-  const auto run = [](const std::string& solver, double error, double seconds) {
-    return TradeRun{.problem = "p",
-                    .which = {"stands", 16, "bodies"},
-                    .solver = solver,
-                    .library = "Signorini",
-                    .error = error,
-                    .seconds = seconds,
-                    .limit_seconds = 5.0};
-  };
   const std::vector<double> levels = {1e-2, 1e-8};
   const auto table = [&](double reference_seconds) {
-    const std::vector<TradeRun> runs = {run("game", 1e-3, 1.0),
-                                        run("reference", 1e-9, reference_seconds)};
+    const std::vector<TradeRun> runs = {run_of("game", 1e-3, 1.0),
+                                        run_of("reference", 1e-9, reference_seconds)};
     return recommendations_markdown({}, level_scores(runs, levels));
   };
   EXPECT_NE(table(1.05).find("| stands | 16 | `reference` 1.1s | `reference`"), std::string::npos)
@@ -135,18 +137,9 @@ TEST(Tradeoff, OfWhatIsAsFastTheMoreAccurateIsRecommended) {
 }
 
 TEST(Tradeoff, OfEquallyAccurateOnesTheFastestIsRecommended) {
-  const auto run = [](const std::string& solver, double error, double seconds) {
-    return TradeRun{.problem = "p",
-                    .which = {"stands", 16, "bodies"},
-                    .solver = solver,
-                    .library = "Signorini",
-                    .error = error,
-                    .seconds = seconds,
-                    .limit_seconds = 5.0};
-  };
   // The fastest is coarse; of the two that are as accurate as each other the slower comes first.
-  const std::vector<TradeRun> runs = {run("coarse", 1e-3, 1.0), run("slow", 1e-9, 1.09),
-                                      run("quick", 1e-9, 1.02)};
+  const std::vector<TradeRun> runs = {run_of("coarse", 1e-3, 1.0), run_of("slow", 1e-9, 1.09),
+                                      run_of("quick", 1e-9, 1.02)};
   const std::vector<double> levels = {1e-2, 1e-8};
   const std::string table = recommendations_markdown({}, level_scores(runs, levels));
   EXPECT_NE(table.find("| `quick` 1.0s | `quick` 1.0s |"), std::string::npos) << table;

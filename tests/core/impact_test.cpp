@@ -73,7 +73,7 @@ TEST_P(SimultaneousLaw, TheWedgeGoesStraightBackUpForE1AndStopsForE0) {
 
 TEST_P(SimultaneousLaw, TheTouchingCradleHasNoBreakAway) {
   if (GetParam().law == ImpactLaw::kReflections) {
-    GTEST_SKIP() << "it has: impact_laws_test.cpp";
+    GTEST_SKIP() << "of reflections it has: Reflections.TheTouchingCradleSendsTheLastBallAway";
   }
   const double s = 2.0;
   Scene scene = scenes::cradle(5, s, 1.0);
@@ -147,7 +147,8 @@ TEST_P(SimultaneousLaw, AFarSupportLiftsWhenTheRodIsHitBeyondTheOther) {
 
 TEST_P(SimultaneousLaw, ADrivenBodyDoesTheWork) {
   if (GetParam().law == ImpactLaw::kReflections) {
-    GTEST_SKIP() << "the balls break away: impact_laws_test.cpp";
+    GTEST_SKIP() << "these balls stay together, by reflections they part: "
+                    "Reflections.TheDrivenBodysWorkBalances";
   }
   const double speed = 2.0;
   for (const double e : {0.0, 0.5, 1.0}) {

@@ -89,15 +89,15 @@ TEST(ChildProcess, AHangEndsAtItsTimeLimit) {
 TEST(ChildProcess, OneThatGetsLittleOfTheProcessorKeepsItsTime) {
   const ChildAnswer child = run_in_child(
       [](const Loaded&) -> std::string {
-        for (int k = 0; k < 4; ++k) {
+        for (int k = 0; k < 6; ++k) {
           const std::clock_t start = std::clock();
           while (std::clock() - start < CLOCKS_PER_SEC / 1000) {
           }
-          ::usleep(200000);
+          ::usleep(450000);
         }
         return "done";
       },
-      {.loading_seconds = 0.1});  // 0.5 s of wall time, but for one that waits
+      {.loading_seconds = 0.4});  // 2 s of wall time for one that waits; this takes 2.7
   EXPECT_EQ(child.end, ChildEnd::kAnswered) << child.reason;
   EXPECT_EQ(child.answer, "done");
 }
