@@ -4,23 +4,37 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 
 // One source for every instruction set: the loops are templates over a vector type, inlined into
 // functions that are compiled for the set (gcc and clang vector extensions).
 #define SIGNORINI_INLINE [[gnu::always_inline]] inline
+#pragma GCC diagnostic ignored "-Wpsabi"  // vectors are returned by inlined functions only
 
 namespace signorini::lcp {
 namespace {
 
 using Stride = std::ptrdiff_t;
 
-// Unaligned loads and stores: alignment is that of a double.
-using Two = double __attribute__((vector_size(16), aligned(8), may_alias));
-using Four = double __attribute__((vector_size(32), aligned(8), may_alias));
-using Eight = double __attribute__((vector_size(64), aligned(8), may_alias));
+using Two = double __attribute__((vector_size(16)));
+using Four = double __attribute__((vector_size(32)));
+using Eight = double __attribute__((vector_size(64)));
 
 template <typename V>
 constexpr int kLanes = static_cast<int>(sizeof(V) / sizeof(double));
+
+// Data are aligned like a double. (An alignment in V's own attributes would not reach a template.)
+template <typename V>
+SIGNORINI_INLINE V load(const double* from) {
+  V value;
+  std::memcpy(&value, from, sizeof value);
+  return value;
+}
+
+template <typename V>
+SIGNORINI_INLINE void store(const V& value, double* to) {
+  std::memcpy(to, &value, sizeof value);
+}
 
 constexpr int kBlock = 8;    // columns factored together
 constexpr int kDepth = 128;  // inner length of a product at a time: what the first cache holds
@@ -41,7 +55,7 @@ SIGNORINI_INLINE void subtract_tile(double* C, Stride ldc, const double* A, cons
     V a[kVectors];
 #pragma GCC unroll 4
     for (int i = 0; i < kVectors; ++i) {
-      a[i] = *reinterpret_cast<const V*>(A + i * kLanes<V>);
+      a[i] = load<V>(A + i * kLanes<V>);
     }
 #pragma GCC unroll 8
     for (int j = 0; j < kColumns; ++j) {
@@ -55,8 +69,8 @@ SIGNORINI_INLINE void subtract_tile(double* C, Stride ldc, const double* A, cons
   for (int j = 0; j < kColumns; ++j) {
 #pragma GCC unroll 4
     for (int i = 0; i < kVectors; ++i) {
-      V* c = reinterpret_cast<V*>(C + j * ldc + i * kLanes<V>);
-      *c = *c - sum[j][i];
+      double* c = C + j * ldc + i * kLanes<V>;
+      store<V>(load<V>(c) - sum[j][i], c);
     }
   }
 }
@@ -156,7 +170,7 @@ SIGNORINI_INLINE bool factor_block(double* panel, Stride ld, int first, int rows
     V x[kSize];
 #pragma GCC unroll 8
     for (int c = 0; c < kSize; ++c) {
-      V value = *reinterpret_cast<const V*>(row + c * ld);
+      V value = load<V>(row + c * ld);
 #pragma GCC unroll 8
       for (int k = 0; k < c; ++k) {
         value -= x[k] * L[k * kSize + c];
@@ -165,7 +179,7 @@ SIGNORINI_INLINE bool factor_block(double* panel, Stride ld, int first, int rows
     }
 #pragma GCC unroll 8
     for (int c = 0; c < kSize; ++c) {
-      *reinterpret_cast<V*>(row + c * ld) = x[c];
+      store<V>(x[c], row + c * ld);
     }
   }
 #pragma GCC unroll 8
@@ -229,18 +243,16 @@ SIGNORINI_INLINE void subtract_times(const double* L, Stride ld, int rows, int c
   int c = 0;
   for (; c + 4 <= columns; c += 4, L += 4 * ld) {
     for (int i = 0; i < rows; i += kLanes<V>) {
-      V* target = reinterpret_cast<V*>(y + i);
-      V sum = *reinterpret_cast<const V*>(L + i) * x[c];
-      sum += *reinterpret_cast<const V*>(L + ld + i) * x[c + 1];
-      V other = *reinterpret_cast<const V*>(L + 2 * ld + i) * x[c + 2];
-      other += *reinterpret_cast<const V*>(L + 3 * ld + i) * x[c + 3];
-      *target = *target - (sum + other);
+      V sum = load<V>(L + i) * x[c];
+      sum += load<V>(L + ld + i) * x[c + 1];
+      V other = load<V>(L + 2 * ld + i) * x[c + 2];
+      other += load<V>(L + 3 * ld + i) * x[c + 3];
+      store<V>(load<V>(y + i) - (sum + other), y + i);
     }
   }
   for (; c < columns; ++c, L += ld) {
     for (int i = 0; i < rows; i += kLanes<V>) {
-      V* target = reinterpret_cast<V*>(y + i);
-      *target = *target - *reinterpret_cast<const V*>(L + i) * x[c];
+      store<V>(load<V>(y + i) - load<V>(L + i) * x[c], y + i);
     }
   }
 }
@@ -264,8 +276,8 @@ SIGNORINI_INLINE double sum_of(const V& v) {
     return v[0] + v[1];
   } else {
     using Half = HalfOf<V>;
-    const Half* halves = reinterpret_cast<const Half*>(&v);
-    return sum_of<Half>(halves[0] + halves[1]);
+    const double* values = reinterpret_cast<const double*>(&v);
+    return sum_of<Half>(load<Half>(values) + load<Half>(values + kLanes<Half>));
   }
 }
 
@@ -281,10 +293,10 @@ SIGNORINI_INLINE void subtract_dots(const double* L, Stride ld, int rows, const 
       sum[c] = V{};
     }
     for (; i + kLanes<V> <= rows; i += kLanes<V>) {
-      const V value = *reinterpret_cast<const V*>(y + i);
+      const V value = load<V>(y + i);
 #pragma GCC unroll 4
       for (int c = 0; c < kColumns; ++c) {
-        sum[c] += *reinterpret_cast<const V*>(L + c * ld + i) * value;
+        sum[c] += load<V>(L + c * ld + i) * value;
       }
     }
 #pragma GCC unroll 4
