@@ -169,7 +169,8 @@ void PlainProblem::judge(const double* z, const Claim& claim) const {
           "z is finite");
   const Residuals found = residuals(z);
   const auto told = [&](long double residual, long double is, long double floor) {
-    return !(residual < (1.0L - kOfTheResidual) * is - claim.of_the_floor * floor);
+    constexpr long double kLeast = std::numeric_limits<double>::denorm_min();  // it is told in double
+    return !(residual < (1.0L - kOfTheResidual) * is - claim.of_the_floor * floor - kLeast);
   };
   require(told(claim.natural_residual, found.natural, found.natural_floor),
           "the natural residual is not less than it is");
