@@ -437,10 +437,12 @@ Verdict judge_claim(const Problem& problem, const Result& result, double toleran
     case Status::kSolvedToRounding: return {wrong_residual(problem, result, tolerance), true};
     case Status::kInfeasible:
     case Status::kNoSolutionBelow:
-      if (!problem.is_lcp()) {
-        return {"a proof about a problem that is not an LCP"};
+      if (!problem.is_unilateral()) {
+        return {"a proof about a problem with bounds or limits"};
       }
-      return {find_wrong_claim(lcp::to_rational(problem), result, tolerance, Truth{}), true};
+      return {
+          find_wrong_claim(lcp::to_rational(problem), result, tolerance, Truth{}, problem.cones),
+          true};
     default: return {};
   }
 }

@@ -36,8 +36,8 @@ struct Verdict {
 ///   (the scales D are rounded). With q = 0 the numerator of the unit-free one must be 0, as the
 ///   certificate says (of cones: to 2^-1000). kSolvedToRounding: each is <= max(tolerance, min(4
 ///   floors, 1e-5)).
-/// - kInfeasible: an LCP, ray >= 0, q.ray < 0, M^T ray <= 0. kNoSolutionBelow: Z is at most the
-///   exact bound of the ray.
+/// - kInfeasible: an LCP, perhaps with cones, ray >= 0, q.ray < 0, M^T ray <= 0 (cones:
+///   rational_judge.h). kNoSolutionBelow: Z is at most the exact bound of the ray.
 /// - kInvalidInput exactly where find_bad_value() finds something; then z is NaN. In every other
 ///   case z and w have n finite numbers.
 [[nodiscard]] Verdict judge_claim(const lcp::Problem& problem, const lcp::Result& result,

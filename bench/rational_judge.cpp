@@ -42,32 +42,47 @@ std::string wrong_solution(const ExactProblem& problem, const Result& result, do
   return {};
 }
 
-/// -q.y and max_j (M^T y)_j of the doubles y.
+/// -q.y, and the fastest that (M^T y).z grows with a z_i, or with the z_N of a cone, of the doubles
+/// y.
 struct RaySums {
   mpq_class minus_q_dot_y;
   mpq_class growth;
 };
 
-RaySums ray_sums(const ExactProblem& problem, const Vector& y) {
+RaySums ray_sums(const ExactProblem& problem, const std::vector<lcp::FrictionCone>& cones,
+                 const Vector& y) {
   RaySums sums;
-  for (int i = 0; i < problem.n; ++i) {
-    sums.minus_q_dot_y -= problem.q[i] * y[i];
-  }
+  std::vector<mpq_class> growth(problem.n);
   for (int j = 0; j < problem.n; ++j) {
-    mpq_class column = 0;
+    sums.minus_q_dot_y -= problem.q[j] * y[j];
     for (int i = 0; i < problem.n; ++i) {
-      column += problem.at(i, j) * y[i];
+      growth[j] += problem.at(i, j) * y[i];
     }
-    sums.growth = j == 0 ? column : std::max(sums.growth, column);
+  }
+  for (const lcp::FrictionCone& cone : cones) {
+    for (int k = 1; k < cone.dimension; ++k) {
+      mpq_class& tangential = growth[cone.normal_row + k];
+      growth[cone.normal_row] += mpq_class(cone.coefficient) * abs(tangential);
+      tangential = 0;  // what is left of it
+    }
+  }
+  for (const mpq_class& value : growth) {
+    sums.growth = std::max(sums.growth, value);
   }
   return sums;
 }
 
-std::string wrong_ray(const ExactProblem& problem, const Result& result, const Truth& truth) {
+std::string wrong_ray(const ExactProblem& problem, const std::vector<lcp::FrictionCone>& cones,
+                      const Result& result, const Truth& truth) {
   if (result.ray.size() != problem.n || !result.ray.allFinite() || result.ray.minCoeff() < 0.0) {
     return "the ray is not finite and >= 0";
   }
-  const RaySums sums = ray_sums(problem, result.ray);
+  for (const lcp::FrictionCone& cone : cones) {
+    if (!result.ray.segment(cone.normal_row + 1, cone.dimension - 1).isZero(0.0)) {
+      return "the ray is not 0 on a tangential row";
+    }
+  }
+  const RaySums sums = ray_sums(problem, cones, result.ray);
   if (sums.minus_q_dot_y <= 0) {
     return "q.ray >= 0";
   }
@@ -144,12 +159,12 @@ Truth find_truth(const lcp::Problem& problem, const ExactProblem& exact) {
 }
 
 std::string find_wrong_claim(const ExactProblem& problem, const Result& result, double tolerance,
-                             const Truth& truth) {
+                             const Truth& truth, const std::vector<lcp::FrictionCone>& cones) {
   switch (result.status) {
     case Status::kSolved:
     case Status::kSolvedToRounding: return wrong_solution(problem, result, tolerance);
     case Status::kInfeasible:
-    case Status::kNoSolutionBelow: return wrong_ray(problem, result, truth);
+    case Status::kNoSolutionBelow: return wrong_ray(problem, cones, result, truth);
     default: return {};
   }
 }

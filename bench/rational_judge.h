@@ -40,11 +40,13 @@ inline constexpr int kMostRowsEnumerated = 8;
 
 /// What is wrong with what a result claims, judged in rationals and against the truth, or empty:
 /// - kSolved, kSolvedToRounding: the residuals (and floors) of z;
-/// - kInfeasible: ray >= 0, q.ray < 0, M^T ray <= 0, and no solution is known;
+/// - kInfeasible: ray >= 0, q.ray < 0, M^T ray <= 0, and no solution is known (with friction cones:
+///   the ray 0 on tangential rows, and (M^T ray)_N + mu sum_k |(M^T ray)_Tk| <= 0);
 /// - kNoSolutionBelow: Z is at most the exact bound of the ray, and no known solution is below it.
 /// The other statuses claim nothing.
 [[nodiscard]] std::string find_wrong_claim(const lcp::ExactProblem& problem,
                                            const lcp::Result& result, double tolerance,
-                                           const Truth& truth);
+                                           const Truth& truth,
+                                           const std::vector<lcp::FrictionCone>& cones = {});
 
 }  // namespace signorini::bench

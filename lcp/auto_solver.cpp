@@ -1,5 +1,6 @@
 #include <signorini/lcp/auto_solver.h>
 #include <signorini/lcp/mass_ratio.h>
+#include <signorini/lcp/ray.h>
 #include <signorini/lcp/symmetric_lcp.h>
 
 #include <algorithm>
@@ -27,6 +28,11 @@ constexpr double kRoughTolerance = 1e-5;
 constexpr double kCaution = 1.5;  // rates fall as sweeps go on
 // From an iterate worse than this the interior point needs more factorisations than from none.
 constexpr double kWarmEnough = 1e-4;
+// Rows that are not tangential up to which a proof that there is no answer costs less than one
+// factorisation of Newton's.
+constexpr Index kNormalsBeforeNewton = 300;
+// A z that is |q| over this part of M has a rounding floor above what any certificate excuses.
+constexpr double kRoundingOfM = 1e-12;
 
 /// Adds a counter that may be absent (-1).
 void add(int& sum, int counter) {
@@ -64,8 +70,8 @@ void AutoSolver::choose(const Problem& problem) {
   }
   const bool symmetric = SymmetricLcp::asymmetry(problem).size <= SymmetricLcp::kMostAsymmetry;
   if (symmetric && n <= kSmall) {
-    chain_.push_back({"dantzig", "symmetric and small"});
-    chain_.push_back({"structured-lemke", "symmetric and small"});
+    chain_.push_back({"dantzig", "symmetric and small", -1, true});
+    chain_.push_back({"structured-lemke", "symmetric and small", -1, true});
   } else if (factored) {
     const bool sweeps_may_win =
         settings_.tolerance >= kRoughTolerance || n > kRowsForAccurateSweeps;
@@ -80,10 +86,10 @@ void AutoSolver::choose(const Problem& problem) {
   }
   chain_.push_back({"alart-curnier", symmetric ? "symmetric" : "not symmetric"});
   if (symmetric && n > kSmall && n <= kStructuredLemkeRows) {
-    chain_.push_back({"structured-lemke", "a vertex, or a proof that there is none"});
+    chain_.push_back({"structured-lemke", "a vertex, or a proof that there is none", -1, true});
   }
   if (n <= kLemkeRows) {
-    chain_.push_back({"lemke", "a vertex, or a proof that there is none"});
+    chain_.push_back({"lemke", "a vertex, or a proof that there is none", -1, true});
   }
   chain_.push_back({"pgs", "takes everything"});
 }
@@ -98,7 +104,19 @@ void AutoSolver::choose_for_cones(const Problem& problem) {
   } else if (factored) {
     chain_.push_back({"cone-interior-point", "perhaps little slides", kConeInteriorSteps});
   }
+  Index normals = problem.size();
+  for (const FrictionCone& cone : problem.cones) {
+    normals -= cone.dimension - 1;
+  }
+  const Step proof{"frictionless", "perhaps a proof that there is none", -1, true};
+  const bool proof_is_cheap = factored && normals <= kNormalsBeforeNewton;
+  if (proof_is_cheap) {
+    chain_.push_back(proof);
+  }
   chain_.push_back({"alart-curnier", "friction cones"});
+  if (!proof_is_cheap && normals <= kStructuredLemkeRows) {
+    chain_.push_back(proof);
+  }
   chain_.push_back({"nsgs", "friction cones"});
 }
 
@@ -148,6 +166,8 @@ bool AutoSolver::attempt(const Problem& problem, const Step& step, int max_itera
   if (one_.ray.size() > 0 && one_.ray_bound > result.ray_bound) {
     result.ray = one_.ray;
     result.ray_bound = one_.ray_bound;
+    is_out_of_reach_ = one_.status == Status::kNoSolutionBelow &&
+                       judge_ray(problem, one_.ray).defect <= kRoundingOfM;
   }
   const double merit = BestIterate::merit(one_.certificate);
   const bool solves_now = is_solved(one_.status) && !is_solved(best_status_);
@@ -189,12 +209,16 @@ Status AutoSolver::iterate(const Problem& problem, const Vector* warm_start,
   best_merit_ = kInfinity;
   best_solver_ = {};
   best_status_ = Status::kNotRun;
+  is_out_of_reach_ = false;
   if (has_start_) {
     start_ = *warm_start;
   }
   result.z.setZero();
   bool done = sweeps_first_ && settings_.max_iterations < 0 && sweep(problem, deadline, result);
   for (std::size_t k = 0; !done && k < chain_.size(); ++k) {
+    if (is_out_of_reach_ && !chain_[k].pivots) {
+      continue;
+    }
     const int most = settings_.max_iterations >= 0 ? settings_.max_iterations : chain_[k].most;
     done = attempt(problem, chain_[k], most, deadline, result);
   }

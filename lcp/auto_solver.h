@@ -28,7 +28,8 @@ struct AutoSettings : SolverSettings {
 /// | problem | tried in this order |
 /// |---|---|
 /// | friction cones | sticking (factored M, from a start) or cone-interior-point (factored M, from
-/// none; the associated law, n > 100), alart-curnier, nsgs |
+/// none; the associated law, n > 100), frictionless (factored M of up to 300 rows that are not
+/// tangential), alart-curnier, frictionless (up to 2000 such rows), nsgs |
 /// | symmetric M, n <= 100 | dantzig, structured-lemke, alart-curnier, lemke, pgs |
 /// | factored M, n > 100 | nncg, for a few sweeps and then if they promise to end soon (with a
 /// tolerance of 1e-5 or more, or n > 5000; mass ratio <= 1e3), interior-point, alart-curnier,
@@ -53,6 +54,10 @@ struct AutoSettings : SolverSettings {
 ///   its time is less, and cone-interior-point does not end on RockPile. So it is not tried there.
 ///
 /// What another solver solved to rounding only, sticking is given to find the last digits of.
+/// A proof that there is no solution ends it. Where there is none below a Z so far off that M,
+/// changed by its own rounding, has none at all (RayVerdict::defect), only pivoting solvers are
+/// tried further: no iteration gets there, and no certificate could tell.
+///
 /// Solvers that refuse a problem are passed over; lemke only up to 1000 rows, structured-lemke up
 /// to 2000. Each starts from the best iterate so far (the interior
 /// point only from one with residuals below 1e-4, being slower from a worse one than from none).
@@ -85,6 +90,7 @@ class AutoSolver : public Solver {
     std::string_view solver;
     std::string_view reason;
     int most = -1;  ///< iterations, where the settings do not say
+    bool pivots = false;
   };
   void choose(const Problem& problem);
   void choose_for_cones(const Problem& problem);
@@ -98,8 +104,9 @@ class AutoSolver : public Solver {
   std::vector<Made> made_;
   std::vector<Step> chain_;
   bool sweeps_first_ = false;
-  Result one_;    // of the attempt
-  Vector start_;  // the best iterate so far, or the warm start
+  bool is_out_of_reach_ = false;  // no solution below a Z that no iteration reaches
+  Result one_;                    // of the attempt
+  Vector start_;                  // the best iterate so far, or the warm start
   bool has_start_ = false;
   double best_merit_ = 0.0;
   Certificate best_certificate_;

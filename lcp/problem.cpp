@@ -127,8 +127,8 @@ std::string_view to_string(FrictionLaw law) {
   return law == FrictionLaw::kCoulomb ? "Coulomb" : "associated";
 }
 
-bool Problem::is_lcp() const {
-  return limits.empty() && cones.empty() && (lower.size() == 0 || (lower.array() == 0.0).all()) &&
+bool Problem::is_unilateral() const {
+  return limits.empty() && (lower.size() == 0 || (lower.array() == 0.0).all()) &&
          (upper.size() == 0 || (upper.array() == kInfinity).all());
 }
 

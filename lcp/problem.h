@@ -66,7 +66,9 @@ struct Problem {
   [[nodiscard]] Index size() const { return q.size(); }
   [[nodiscard]] bool has_bounds() const { return lower.size() > 0 || upper.size() > 0; }
   /// True when every row is 0 <= z_i ⊥ w_i >= 0.
-  [[nodiscard]] bool is_lcp() const;
+  [[nodiscard]] bool is_lcp() const { return cones.empty() && is_unilateral(); }
+  /// True when every row that is in no cone is 0 <= z_i ⊥ w_i >= 0.
+  [[nodiscard]] bool is_unilateral() const;
 };
 
 /// Checks shapes and indices. @throws std::invalid_argument that names the field, its value and the

@@ -2,6 +2,7 @@
 #include <signorini/lcp/exact_sum.h>
 #include <signorini/lcp/ray.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -9,14 +10,51 @@
 namespace signorini::lcp {
 namespace {
 
-/// max_i (M^T y)_i+, rounded up; 0 only if M^T y <= 0 exactly. NaN stays NaN.
-long double growth(const MatrixForm& M, const VectorRef& y) {
+/// What M^T y is summed from: (|M|^T y)_i, or a bound of it.
+void sizes_of_sums(const MatrixForm& M, const VectorRef& y, Vector& sizes) {
+  if (const auto* dense = std::get_if<Matrix>(&M)) {
+    sizes = dense->cwiseAbs().transpose() * y;
+  } else if (const auto* sparse = std::get_if<SparseMatrix>(&M)) {
+    sizes = sparse->cwiseAbs().transpose() * y;
+  } else {
+    diagonal(M, sizes);
+    sizes = sizes.cwiseSqrt();
+    sizes *= sizes.dot(y);
+  }
+}
+
+/// The largest |x| in an interval; NaN if it has no order.
+long double magnitude(const Interval& x) {
+  return x.lower <= x.upper ? std::max(-x.lower, x.upper)
+                            : std::numeric_limits<long double>::quiet_NaN();
+}
+
+/// How fast (M^T y).z may grow with the z_i of one row, or with the z_N of one contact.
+struct Growth {
+  Index row = 0;
+  Interval value;
+};
+
+/// max(0, those that are not tangential), rounded up; 0 only if all are <= 0 exactly. NaN stays
+/// NaN.
+Growth largest_growth(const Problem& problem, const VectorRef& y) {
   std::vector<Interval> product;
-  enclose_transposed_product(M, y, product);
-  long double largest = 0.0L;
-  for (const Interval& entry : product) {
-    if (!(entry.upper <= largest)) {
-      largest = entry.upper;
+  enclose_transposed_product(problem.M, y, product);
+  std::vector<bool> is_tangential(product.size(), false);
+  for (const FrictionCone& cone : problem.cones) {
+    for (int k = 1; k < cone.dimension; ++k) {
+      is_tangential[cone.normal_row + k] = true;
+      product[cone.normal_row] +=
+          cone.coefficient * Interval(magnitude(product[cone.normal_row + k]));
+    }
+  }
+  Growth largest;
+  for (std::size_t i = 0; i < product.size(); ++i) {
+    if (!is_tangential[i] && !(product[i].upper <= largest.value.upper)) {
+      largest = {static_cast<Index>(i), product[i]};
+      if (std::isnan(product[i].upper)) {
+        break;
+      }
     }
   }
   return largest;
@@ -37,8 +75,23 @@ double round_down(long double value) {
 }
 
 bool can_be_judged(const Problem& problem, const VectorRef& y) {
-  return problem.is_lcp() && y.allFinite() && (y.array() >= 0.0).all() &&
-         find_bad_value(problem).empty();
+  const auto is_normal_alone = [&y](const FrictionCone& cone) {
+    return (y.segment(cone.normal_row + 1, cone.dimension - 1).array() == 0.0).all();
+  };
+  return problem.is_unilateral() && y.allFinite() && (y.array() >= 0.0).all() &&
+         std::ranges::all_of(problem.cones, is_normal_alone) && find_bad_value(problem).empty();
+}
+
+double defect_of(const Problem& problem, const VectorRef& y, const Growth& growth) {
+  Vector sizes;
+  sizes_of_sums(problem.M, y, sizes);
+  double size = sizes[growth.row];
+  for (const FrictionCone& cone : problem.cones) {
+    if (cone.normal_row == growth.row) {
+      size += cone.coefficient * sizes.segment(growth.row + 1, cone.dimension - 1).sum();
+    }
+  }
+  return static_cast<double>(growth.value.upper) / size;
 }
 
 }  // namespace
@@ -51,16 +104,17 @@ RayVerdict judge_ray(const Problem& problem, const VectorRef& y) {
   if (q_dot_y.sign() >= 0) {
     return {};
   }
-  const long double most = growth(problem.M, y);
+  const Growth growth = largest_growth(problem, y);
+  const long double most = growth.value.upper;
   if (most == 0.0L) {
-    return {Status::kInfeasible, std::numeric_limits<double>::infinity()};
+    return {Status::kInfeasible, std::numeric_limits<double>::infinity(), 0.0};
   }
   const Interval bound = Interval(-q_dot_y.enclosure().upper) / most;
   const double rounded = round_down(bound.lower);
   if (!(rounded > 0.0) || !std::isfinite(most)) {  // underflow, overflow or NaN
     return {};
   }
-  return {Status::kNoSolutionBelow, rounded};
+  return {Status::kNoSolutionBelow, rounded, defect_of(problem, y, growth)};
 }
 
 }  // namespace signorini::lcp

@@ -4,6 +4,7 @@
 #include <signorini/lcp/block_pivoting.h>
 #include <signorini/lcp/cone_interior_point.h>
 #include <signorini/lcp/dantzig.h>
+#include <signorini/lcp/frictionless.h>
 #include <signorini/lcp/interior_point.h>
 #include <signorini/lcp/lemke.h>
 #include <signorini/lcp/nncg.h>
@@ -55,6 +56,7 @@ constexpr std::array kEntries = {
     Entry{"dantzig", &make<Dantzig, DantzigSettings>},
     Entry{"block-pivoting", &make<BlockPivoting, BlockPivotingSettings>},
     Entry{"cone-interior-point", &make<ConeInteriorPoint, ConeInteriorPointSettings>},
+    Entry{"frictionless", &make<Frictionless, FrictionlessSettings>},
     Entry{"sticking", &make<Sticking, StickingSettings>},
     Entry{"alart-curnier", &make<AlartCurnier, AlartCurnierSettings>},
     Entry{"nsgs", &make<Nsgs, NsgsSettings>},

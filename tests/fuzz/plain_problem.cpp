@@ -169,7 +169,8 @@ void PlainProblem::judge(const double* z, const Claim& claim) const {
           "z is finite");
   const Residuals found = residuals(z);
   const auto told = [&](long double residual, long double is, long double floor) {
-    constexpr long double kLeast = std::numeric_limits<double>::denorm_min();  // it is told in double
+    constexpr long double kLeast =
+        std::numeric_limits<double>::denorm_min();  // it is told in double
     return !(residual < (1.0L - kOfTheResidual) * is - claim.of_the_floor * floor - kLeast);
   };
   require(told(claim.natural_residual, found.natural, found.natural_floor),
@@ -191,7 +192,8 @@ void PlainProblem::judge(const double* z, const Claim& claim) const {
 void PlainProblem::judge_ray(const double* y, double bound) const {
   long double down = 0.0L;  // q.y, and
   long double down_size = 0.0L;
-  long double most = 0.0L;  // max (M^T y)_i, each less what rounding may have added
+  std::vector<long double> growth(n);  // (M^T y)_i, and
+  std::vector<long double> rounding(n);
   for (int j = 0; j < n; ++j) {
     require(y[j] >= 0.0 && std::isfinite(y[j]), "a ray is finite and not negative");
     down += q[j] * y[j];
@@ -202,7 +204,20 @@ void PlainProblem::judge_ray(const double* y, double bound) const {
       column += M[i * n + j] * y[i];
       column_size += size[i * n + j] * y[i];
     }
-    most = std::max(most, column - kOfTheFloor * kDoubleRounding * column_size);
+    growth[j] = column;
+    rounding[j] = kOfTheFloor * kDoubleRounding * column_size;
+  }
+  for (const Cone& cone : cones) {  // |z_Tk| <= mu z_N
+    for (int k = 1; k < cone.dimension; ++k) {
+      require(y[cone.normal_row + k] == 0.0, "a ray has no tangential rows");
+      growth[cone.normal_row] += cone.coefficient * std::abs(growth[cone.normal_row + k]);
+      rounding[cone.normal_row] += cone.coefficient * rounding[cone.normal_row + k];
+      growth[cone.normal_row + k] = 0.0L;
+    }
+  }
+  long double most = 0.0L;
+  for (int j = 0; j < n; ++j) {
+    most = std::max(most, growth[j] - rounding[j]);
   }
   down -= kOfTheFloor * kDoubleRounding * down_size;
   require(down < 0.0L, "along a ray q.y falls");

@@ -165,6 +165,30 @@ TEST(AutoSolver, ProvesWhatIsInfeasible) {
 }
 
 // w = -1 - z has a ray for every method that follows one and no solution.
+/// A ball between closing walls whose normals are opposite but for rounding, in the plane.
+TEST(AutoSolver, ProvesThatFrictionDoesNotHelpASqueezedBallBeforeItIterates) {
+  for (const double slant : {0.0, 0x1p-50}) {
+    FactoredMatrix A;
+    const int ball = A.mass.add_mass(Matrix::Identity(2, 2));
+    for (const Vector& axis :
+         {Vector{{1.0, 0.0}}, Vector{{0.0, 1.0}}, Vector{{-1.0, slant}}, Vector{{slant, 1.0}}}) {
+      A.add_row();
+      A.add_entry(ball, axis);
+    }
+    Problem problem;
+    problem.M = A;
+    problem.q = Vector{{-1.0, 2.0, -1.0, 2.0}};
+    problem.cones = {{0, 2, 0.5}, {2, 2, 0.5}};
+    Result result;
+    AutoSolver().solve(problem, result);
+    EXPECT_EQ(result.status, slant == 0.0 ? Status::kInfeasible : Status::kNoSolutionBelow);
+    EXPECT_GT(result.ray_bound, 1e14);
+    ASSERT_FALSE(result.attempts.empty());
+    EXPECT_EQ(result.attempts.back().solver, "frictionless");
+    EXPECT_LE(result.attempts.size(), 2);
+  }
+}
+
 TEST(AutoSolver, TriesEverySolverBeforeItGivesUp) {
   const Result result = solve(lcp(Matrix{{0, -1}, {-2, 0}}, Vector{{-1, -1}}));
   EXPECT_FALSE(is_solved(result.status));
