@@ -75,6 +75,9 @@ class Study {
         continue;
       }
       for (const bool safe : {false, true}) {
+        if (!safe && !options.plain_forms) {
+          continue;
+        }
         ImpactRow row;
         row.law = law;
         row.energy_safe = safe;

@@ -20,6 +20,7 @@ struct ImpactOptions {
   std::vector<ImpactLaw> laws = {ImpactLaw::kNewton, ImpactLaw::kNotes, ImpactLaw::kPoisson,
                                  ImpactLaw::kReflections};
   RandomImpactOptions impact = {};         ///< most_friction > 0: friction acts
+  bool plain_forms = true;                 ///< beside the energy-safe ones
   int first = 0;                           ///< number of the first impact, >= 0
   int impacts = 10000;                     ///< >= 0
   std::uint64_t seed = 1;                  ///< impact k of a seed is the same whatever `impacts` is

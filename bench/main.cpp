@@ -116,6 +116,7 @@ struct ImpactSetOptions {
   int first = 0;
   RandomImpactOptions impact = {};
   std::vector<std::string> laws = {};  // empty: all
+  bool energy_safe_only = false;
 };
 
 ImpactLaw simultaneous_law(const std::string& name) {
@@ -137,6 +138,7 @@ int run_impacts(const StudyOptions& options, const ImpactSetOptions& set) {
   study.recorder = dump.recorder();
   study.first = set.first;
   study.impact = set.impact;
+  study.plain_forms = !set.energy_safe_only;
   if (!set.laws.empty()) {
     study.laws.clear();
     for (const std::string& name : set.laws) {
@@ -202,6 +204,8 @@ int run(int argc, char** argv) {
       ->add_option("--laws", impact_set.laws,
                    "Of Newton, notes, Poisson, reflections (default: all)")
       ->delimiter(',');
+  impacts_command->add_flag("--energy-safe", impact_set.energy_safe_only,
+                            "The energy-safe forms alone, which take half the time");
   StudyOptions laws{.count = 1000};
   const CLI::App* laws_command =
       add_study(app, "laws", "The five desiderata of an impact law, for each law and for Bullet",

@@ -109,7 +109,7 @@ void AutoSolver::choose_for_cones(const Problem& problem) {
     normals -= cone.dimension - 1;
   }
   const Step proof{"frictionless", "perhaps a proof that there is none", -1, true};
-  const bool proof_is_cheap = factored && normals <= kNormalsBeforeNewton;
+  const bool proof_is_cheap = factored && !has_start_ && normals <= kNormalsBeforeNewton;
   if (proof_is_cheap) {
     chain_.push_back(proof);
   }
