@@ -19,6 +19,7 @@
 #include <regex>
 #include <sdf/sdf.hh>
 #include <set>
+#include <span>
 #include <sstream>
 #include <tinyxml2.h>
 
@@ -64,12 +65,14 @@ class ConsoleCapture {
   ConsoleCapture(const ConsoleCapture&) = delete;
   ConsoleCapture& operator=(const ConsoleCapture&) = delete;
 
+  /// Without those about <inertial auto>, which its older versions do not know and we act on.
   [[nodiscard]] std::vector<std::string> lines() const {
     const std::regex colours("\x1b\\[[0-9;]*m");
     std::istringstream text(std::regex_replace(text_.str(), colours, ""));
     std::vector<std::string> found;
     for (std::string line; std::getline(text, line);) {
-      if (!squeezed(line).empty()) found.push_back(squeezed(line));
+      const bool is_known = line.find("Attribute[auto] in element[inertial]") != std::string::npos;
+      if (!is_known && !squeezed(line).empty()) found.push_back(squeezed(line));
     }
     return found;
   }
@@ -164,10 +167,26 @@ class SceneBuilder {
                                "' has no <inertial>: 1 kg and 1 kg m^2 about every axis, "
                                "SDFormat's default");
     }
-    if (!computed_inertia_.empty()) scene_.notices.push_back(computed_inertia_);
+    if (!names_by_computed_mass_.empty()) scene_.notices.push_back(computed_inertia_notice());
   }
 
  private:
+  /// Bodies of equal mass together, the first of them by name.
+  [[nodiscard]] std::string computed_inertia_notice() const {
+    constexpr std::size_t kNamed = 3;
+    std::string notice = "<inertial auto=\"true\">, computed from the shapes: ";
+    std::string_view separator;
+    for (const auto& [mass, names] : names_by_computed_mass_) {
+      const auto first = std::span(names).first(std::min(kNamed, names.size()));
+      notice += fmt::format("{}{} '{}'{} {}{}", separator,
+                            names.size() == 1 ? "body" : fmt::format("{} bodies", names.size()),
+                            fmt::join(first, "', '"), names.size() > kNamed ? " .." : "", mass,
+                            names.size() == 1 ? "" : " each");
+      separator = ", ";
+    }
+    return notice;
+  }
+
   void require(const sdf::Errors& errors, const std::string& field, const sdf::Element& where) {
     if (errors.empty()) return;
     throw InputError(survey_.locate(where) + ": " + field + ": " + errors.front().Message());
@@ -319,10 +338,7 @@ class SceneBuilder {
       body.inertia +=
           part.inertia + part.mass * (arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose());
     }
-    computed_inertia_ += fmt::format(
-        "{}body '{}' {:.6g} kg",
-        computed_inertia_.empty() ? "<inertial auto=\"true\">, computed from the shapes: " : ", ",
-        body.name, body.mass);
+    names_by_computed_mass_[fmt::format("{:.6g} kg", body.mass)].push_back(body.name);
     return com;
   }
 
@@ -428,7 +444,7 @@ class SceneBuilder {
   bool has_world_ = false;
   std::vector<std::string> default_inertia_;
   BodyOfLink body_of_link_;
-  std::string computed_inertia_;  ///< a notice
+  std::map<std::string, std::vector<std::string>> names_by_computed_mass_;
 };
 
 void add_ground(Scene& scene, double height) {

@@ -87,10 +87,14 @@ function tableSection(table: Table): HTMLElement {
     h('tbody', {}, ...rows))));
 }
 
+const NOTICES_SHOWN = 6;
+
 function noticesSection(scene: Scene): HTMLElement | null {
   if (scene.notices.length === 0) return null;
-  return h('section', { class: 'notices' }, h('h2', {}, 'Notices'),
-    h('ul', {}, ...scene.notices.map((notice) => h('li', {}, notice))));
+  const list = (notices: string[]) => h('ul', {}, ...notices.map((notice) => h('li', {}, notice)));
+  const rest = scene.notices.slice(NOTICES_SHOWN);
+  return h('section', { class: 'notices' }, h('h2', {}, 'Notices'), list(scene.notices.slice(0, NOTICES_SHOWN)),
+    rest.length > 0 ? h('details', {}, h('summary', {}, `${rest.length} more`), list(rest)) : null);
 }
 
 function runSection(scene: Scene): HTMLElement {
