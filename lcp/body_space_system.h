@@ -22,6 +22,8 @@ class BodySpaceSystem final : public ShiftedSystem {
   void solve(const Vector& h, Vector& dx) override;
 
   [[nodiscard]] double factor_cost() const override;
+  /// Of one factorisation of H. @pre set()
+  [[nodiscard]] double factor_flops() const { return cholesky_->counts().flops; }
   [[nodiscard]] std::int64_t factor_bytes() const override {
     return static_cast<std::int64_t>(cholesky_->counts().bytes);
   }

@@ -341,6 +341,32 @@ TEST_P(InteriorPointOnFamilies, SolvingAgainAllocatesNothing) {
   EXPECT_EQ(allocations.count(), 0) << "with bounds";
 }
 
+/// Where a factorisation costs much, sweeps find the set first: 13 factorisations without them.
+TEST(InteriorPoint, StartsLargePilesFromSweeps) {
+  const Problem problem = make_family({.family = "spheres", .size = 4000});
+  InteriorPoint solver;
+  Result result;
+  solver.solve(problem, result);
+  EXPECT_EQ(result.status, Status::kSolved);
+  EXPECT_EQ(result.detail, "started from 200 sweeps");
+  EXPECT_LE(result.statistics.factorizations, 4);
+  const AllocationCount allocations;
+  solver.solve(problem, result);
+  EXPECT_EQ(allocations.count(), 0);
+}
+
+TEST(InteriorPoint, SolvesPilesThatSweepsDoNotSettle) {
+  for (const double ratio : {100.0, 1000.0}) {  // sweeps fail; and are not tried
+    const Problem problem =
+        make_family({.family = "spheres", .size = 3500, .mass_ratio = ratio, .at_rest = true});
+    InteriorPoint solver;
+    Result result;
+    solver.solve(problem, result);
+    EXPECT_EQ(result.status, Status::kSolved) << ratio;
+    EXPECT_EQ(result.detail, ratio == 100.0 ? "started from 200 sweeps" : "");
+  }
+}
+
 TEST(InteriorPoint, RefusesCoupledLimitsAndCones) {
   InteriorPoint solver;
   Result result;
