@@ -137,11 +137,11 @@ class InteriorPoint::Workspace {
     constexpr double kAlike = 100.0;
     are_alike_ = body_space_ && mass_ratio(std::get<FactoredMatrix>(problem.M).mass) <= kAlike;
     iterations_ = 0;
-    has_swept_ = false;
+    sweeps_ = 0;
     const Status ending = run(problem, warm_start);
-    if (has_swept_) {
+    if (sweeps_ > 0) {
       result.detail += "started from ";
-      result.detail += std::to_string(kSweeps);
+      result.detail += std::to_string(sweeps_);
       result.detail += " sweeps";
     }
     if (proximal_ > settings_.proximal) {
@@ -158,12 +158,12 @@ class InteriorPoint::Workspace {
 
  private:
   static constexpr int kSweeps = 200;
+  static constexpr int kWarmSweeps = 60;
 
   [[nodiscard]] Status run(const Problem& problem, const Vector* warm_start);
-  [[nodiscard]] bool try_set_of(const Vector& start, double& distance);
   [[nodiscard]] bool start_warm(const Vector& warm_start);
   [[nodiscard]] bool sweeps_are_cheap() const;
-  [[nodiscard]] bool start_swept(const Problem& problem);
+  [[nodiscard]] const Vector& sweep(const Problem& problem, const Vector* warm_start);
   [[nodiscard]] bool start_on_all_rows();
   void start_cold(double size_of_x);
   void set_barriers();
@@ -180,13 +180,13 @@ class InteriorPoint::Workspace {
   bool body_space_ = false;
   bool forces_add_up_ = false;  // contacts of bodies, and nothing that limits a force
   bool are_alike_ = false;      // the masses
-  bool has_swept_ = false;
+  int sweeps_ = 0;              // before the first set
   BodySpaceSystem bodies_;
   std::unique_ptr<ShiftedSystem> given_;
   ScaledProblem problem_;
   ActiveSetNewton active_set_;
   ProximalNewton proximal_newton_;
-  std::unique_ptr<Nncg> sweeper_;
+  std::unique_ptr<Nncg> sweeper_, warm_sweeper_;
   Result swept_;
   int iterations_ = 0;
 
@@ -218,11 +218,15 @@ Status InteriorPoint::Workspace::run(const Problem& problem, const Vector* warm_
   if (problem_.consider(x_, gradient_) <= settings_.tolerance) {
     return Status::kStalled;  // solved: the certificate will say so
   }
-  if (warm_start != nullptr && start_warm(*warm_start)) {
-    return Status::kStalled;
+  const Vector* start = warm_start;
+  if (forces_add_up_ && are_alike_) {
+    if (sweeps_are_cheap()) {
+      start = &sweep(problem, warm_start);
+    } else if (start == nullptr && start_on_all_rows()) {
+      return Status::kStalled;
+    }
   }
-  if (warm_start == nullptr && forces_add_up_ && are_alike_ &&
-      (sweeps_are_cheap() ? start_swept(problem) : start_on_all_rows())) {
+  if (start != nullptr && start_warm(*start)) {
     return Status::kStalled;
   }
   const Status ending = interior_point(warm_start == nullptr);
@@ -280,12 +284,34 @@ void InteriorPoint::Workspace::start_cold(double size_of_x) {
   }
 }
 
-/// Tries the active set that the start points at, with x_ at it. @return whether that solves the
-/// problem; if not, `distance` is how far x_ is from its projection, root mean square
-bool InteriorPoint::Workspace::try_set_of(const Vector& start, double& distance) {
+/// Whether kSweeps sweeps cost at most about six factorisations, by the flops of a factorisation a
+/// row: of piles of spheres 4,000 with 1000 contacts, 12,000 with 3000, 41,000 with 10,000, 157,000
+/// with 30,000; of pyramids and walls up to 10,000 with 40,000, of towers 100.
+bool InteriorPoint::Workspace::sweeps_are_cheap() const {
+  constexpr double kFlopsOfARow = 1e4;
+  return bodies_.factor_flops() >= kFlopsOfARow * static_cast<double>(problem_.size());
+}
+
+/// The answer of a few sweeps, from the warm start if there is one.
+const Vector& InteriorPoint::Workspace::sweep(const Problem& problem, const Vector* warm_start) {
+  std::unique_ptr<Nncg>& sweeper = warm_start == nullptr ? sweeper_ : warm_sweeper_;
+  sweeps_ = warm_start == nullptr ? kSweeps : kWarmSweeps;
+  if (sweeper == nullptr) {
+    NncgSettings settings;
+    settings.tolerance = settings_.tolerance;
+    settings.max_iterations = sweeps_;
+    sweeper = std::make_unique<Nncg>(settings);
+  }
+  sweeper->solve(problem, swept_, warm_start);
+  return swept_.z;
+}
+
+/// Tries the active set of the warm start; if that does not solve the problem, puts the iterate
+/// near it, away from the bounds by the size of its error. @return whether the problem is solved
+bool InteriorPoint::Workspace::start_warm(const Vector& warm_start) {
   constexpr ActiveSetNewton::Limits kLimits = {.factorizations = 8, .wrong_share = 0.05};
   const Index n = problem_.size();
-  x_ = start.cwiseProduct(problem_.system().scale())
+  x_ = warm_start.cwiseProduct(problem_.system().scale())
            .cwiseMax(problem_.lower())
            .cwiseMin(problem_.upper());
   problem_.gradient(x_, gradient_);
@@ -302,47 +328,15 @@ bool InteriorPoint::Workspace::try_set_of(const Vector& start, double& distance)
     const double error = x_[i] - std::clamp(target, problem_.lower()[i], problem_.upper()[i]);
     sum += error * error;
   }
-  distance = std::sqrt(sum / static_cast<double>(n));
   trial_ = x_;
-  const bool solved = active_set_.improve(problem_, trial_, guess_, kLimits, settings_.tolerance) <=
-                      settings_.tolerance;
-  guess_.clear();
-  return solved;
-}
-
-/// Whether kSweeps sweeps cost at most about six factorisations, by the flops of a factorisation a
-/// row: of piles of spheres 4,000 with 1000 contacts, 12,000 with 3000, 41,000 with 10,000, 157,000
-/// with 30,000; of pyramids and walls up to 10,000 with 40,000, of towers 100.
-bool InteriorPoint::Workspace::sweeps_are_cheap() const {
-  constexpr double kFlopsOfARow = 1e4;
-  return bodies_.factor_flops() >= kFlopsOfARow * static_cast<double>(problem_.size());
-}
-
-/// Tries the active set that a few sweeps point at. @return whether that solves the problem
-bool InteriorPoint::Workspace::start_swept(const Problem& problem) {
-  if (sweeper_ == nullptr) {
-    NncgSettings settings;
-    settings.tolerance = settings_.tolerance;
-    settings.max_iterations = kSweeps;
-    sweeper_ = std::make_unique<Nncg>(settings);
-  }
-  has_swept_ = true;
-  sweeper_->solve(problem, swept_);
-  double distance = 0.0;
-  return !deadline_->passed() && try_set_of(swept_.z, distance);
-}
-
-/// Tries the active set of the warm start; if that does not solve the problem, puts the iterate
-/// near it, away from the bounds by the size of its error. @return whether the problem is solved
-bool InteriorPoint::Workspace::start_warm(const Vector& warm_start) {
-  double distance = 0.0;
-  if (try_set_of(warm_start, distance)) {
+  if (active_set_.improve(problem_, trial_, guess_, kLimits, settings_.tolerance) <=
+      settings_.tolerance) {
     return true;
   }
-  const Index n = problem_.size();
+  guess_.clear();
   const double size =
       std::max(problem_.g().cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
-  const double floor = std::max(distance, 1e-10 * size);
+  const double floor = std::max(std::sqrt(sum / static_cast<double>(n)), 1e-10 * size);
   lower_.s.setOnes(n);
   lower_.y.setZero(n);
   upper_.s.setOnes(n);
