@@ -65,6 +65,19 @@ double ActiveSetNewton::improve(ScaledProblem& problem, Vector& x, std::vector<R
   return residual;
 }
 
+/// h_: minus the gradient of x in the rows between their bounds. @return its largest
+double ActiveSetNewton::gradient_on_set(ScaledProblem& problem, const Vector& x,
+                                        const std::vector<RowState>& state) {
+  problem.gradient(x, gradient_);
+  double most = 0.0;
+  h_.resize(x.size());
+  for (Index i = 0; i < x.size(); ++i) {
+    h_[i] = state[i] == RowState::kBetween ? -gradient_[i] : 0.0;
+    most = std::max(most, std::abs(h_[i]));
+  }
+  return most;
+}
+
 /// Proximal steps with the factor at hand until the gradient of the rows between their bounds no
 /// longer halves. gradient_ is that of x at the end.
 void ActiveSetNewton::solve_on_set(ScaledProblem& problem, Vector& x,
@@ -77,13 +90,7 @@ void ActiveSetNewton::solve_on_set(ScaledProblem& problem, Vector& x,
   const double rounding = 1e-15 * (problem.g().cwiseAbs().maxCoeff() + x.cwiseAbs().maxCoeff());
   double before = kInfinity;
   for (int step = 0;; ++step) {
-    problem.gradient(x, gradient_);
-    double most = 0.0;
-    h_.resize(x.size());
-    for (Index i = 0; i < x.size(); ++i) {
-      h_[i] = state[i] == RowState::kBetween ? -gradient_[i] : 0.0;
-      most = std::max(most, std::abs(h_[i]));
-    }
+    const double most = gradient_on_set(problem, x, state);
     if (!(most < 0.5 * before) || most <= rounding || step == kMostProximalSteps) {
       return;
     }
@@ -97,12 +104,14 @@ void ActiveSetNewton::solve_on_set(ScaledProblem& problem, Vector& x,
 /// solve_on_set() finds the point next to the start: outside the bounds perhaps, while others are
 /// inside. Rows outside are mirrored in their bound and the plane is gone back to, with the factor
 /// at hand, which ends inside if the plane has an inside (Motzkin, Schoenberg 1954, relaxation with
-/// factor 2). Gives up as soon as it does not help: without redundancy the point comes back.
+/// factor 2). Gives up as soon as it does not help: without redundancy the point comes back. On the
+/// way one proximal step is near enough to the plane; the last point is solved for in full.
 void ActiveSetNewton::seek_inside(ScaledProblem& problem, Vector& x,
                                   const std::vector<RowState>& state, int rounds,
                                   double most_outside) {
   double before = kInfinity;
-  for (int round = 0; round < rounds; ++round) {
+  int round = 0;
+  for (; round < rounds; ++round) {
     double most = 0.0;
     int outside = 0;
     for (Index i = 0; i < x.size(); ++i) {
@@ -113,7 +122,7 @@ void ActiveSetNewton::seek_inside(ScaledProblem& problem, Vector& x,
       }
     }
     if (most == 0.0 || most > kHelps * before || outside > most_outside) {
-      return;
+      break;
     }
     before = most;
     for (Index i = 0; i < x.size(); ++i) {
@@ -122,6 +131,11 @@ void ActiveSetNewton::seek_inside(ScaledProblem& problem, Vector& x,
         x[i] = std::clamp(2.0 * bound - x[i], problem.lower()[i], problem.upper()[i]);
       }
     }
+    gradient_on_set(problem, x, state);
+    problem.system().solve(h_, dx_);
+    x += dx_;
+  }
+  if (round > 0) {
     solve_on_set(problem, x, state);
   }
 }

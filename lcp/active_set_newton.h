@@ -40,6 +40,8 @@ class ActiveSetNewton {
                  const Limits& limits, double tolerance);
 
  private:
+  double gradient_on_set(ScaledProblem& problem, const Vector& x,
+                         const std::vector<RowState>& state);
   void solve_on_set(ScaledProblem& problem, Vector& x, const std::vector<RowState>& state);
   void seek_inside(ScaledProblem& problem, Vector& x, const std::vector<RowState>& state,
                    int rounds, double most_outside);

@@ -33,8 +33,12 @@ void check(signorini_error error) {
 template <typename Array>
 const auto* data_of(const Array& array, py::ssize_t length, const char* name) {
   if (array.ndim() != 1 || array.shape(0) != length) {
+    std::string got;
+    for (py::ssize_t axis = 0; axis < array.ndim(); ++axis) {
+      got += (axis == 0 ? "" : ", ") + std::to_string(array.shape(axis));
+    }
     throw py::value_error(std::string(name) + ": must have the shape (" + std::to_string(length) +
-                          ",)");
+                          ",), got (" + got + (array.ndim() == 1 ? ",)" : ")"));
   }
   return array.data();
 }

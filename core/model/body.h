@@ -20,7 +20,7 @@ struct Body {
   double mass = 1.0;                ///< kg, > 0 (dynamic bodies)
   Mat3 inertia = Mat3::Identity();  ///< J_body about the centre of mass, body axes, kg m^2
   double gravity_scale = 1.0;       ///< 0: gravity does not act on this body (dimensionless)
-  std::string name;                 ///< for reports
+  std::string name = {};            ///< for reports
 
   [[nodiscard]] bool is_dynamic() const { return kind == BodyKind::kDynamic; }
 };

@@ -54,9 +54,9 @@ struct Contact {
   /// The same pair of features has the same id from step to step, whatever else touches.
   std::uint64_t feature_id = 0;
   NormalOwner owner = NormalOwner::kFaceB;
-  LocalSurface surface_a;  ///< for N' and d''
-  LocalSurface surface_b;
-  Material material;  ///< of the pair, by the pairing rule
+  LocalSurface surface_a = {};  ///< for N' and d''
+  LocalSurface surface_b = {};
+  Material material = {};  ///< of the pair, by the pairing rule
   /// Along which mu is material.friction; its part across N counts, world axes. Zero, or along N:
   /// any. Only with a friction_ratio other than 1.
   Vec3 friction_direction = Vec3::Zero();
