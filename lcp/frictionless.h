@@ -24,8 +24,10 @@ struct FrictionlessSettings : SolverSettings {};
 ///
 /// Takes what StructuredLemke takes, and cones. Endings besides solved: kInfeasible or another
 /// verdict on the ray, kStalled (the answer without friction is none with it), those of
-/// StructuredLemke. Cost: that of StructuredLemke on the rows that are left. Allocates nothing once
-/// capacity was reached (a sparse M apart).
+/// StructuredLemke.
+///
+/// Cost: that of StructuredLemke on the rows that are left. Allocates nothing once capacity was
+/// reached (a sparse M apart).
 class Frictionless : public Solver {
  public:
   /// @throws std::invalid_argument for a setting out of its range.

@@ -44,8 +44,10 @@ struct RayVerdict {
 /// @param problem shapes checked (check_shapes()). Anything with bounds other than 0 and +inf, with
 /// coupled limits, or with a value that is not finite, is unproven.
 /// @param y n numbers, the caller's units, any scale; anything negative or not finite, or not 0 on
-/// a tangential row, is unproven. Source: the Farkas argument above; rays of Lemke's method in
-/// Cottle, Pang, Stone, The Linear Complementarity Problem (1992), theorem 4.4.9.
+/// a tangential row, is unproven.
+///
+/// Source: the Farkas argument above; rays of Lemke's method in Cottle, Pang, Stone, The Linear
+/// Complementarity Problem (1992), theorem 4.4.9.
 [[nodiscard]] RayVerdict judge_ray(const Problem& problem, const VectorRef& y);
 
 }  // namespace signorini::lcp
