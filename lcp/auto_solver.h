@@ -28,8 +28,8 @@ struct AutoSettings : SolverSettings {
 /// | problem | tried in this order |
 /// |---|---|
 /// | friction cones | sticking (factored M, from a start) or cone-interior-point (factored M, from
-/// none; the associated law, n > 100), frictionless (factored M, from none, up to 300 rows that are not
-/// tangential), alart-curnier, frictionless (where it was not tried, up to 2000 such rows), nsgs |
+/// none; the associated law, n > 100), frictionless (factored M, from none, up to 300 rows that are
+/// not tangential), alart-curnier, frictionless (if it was not tried, up to 2000 such rows), nsgs |
 /// | symmetric M, n <= 100 | dantzig, structured-lemke, alart-curnier, lemke, pgs |
 /// | factored M, n > 100 | nncg, for a few sweeps and then if they promise to end soon (with a
 /// tolerance of 1e-5 or more, or n > 5000; mass ratio <= 1e3), interior-point, alart-curnier,
