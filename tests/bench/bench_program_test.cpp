@@ -1,3 +1,5 @@
+#include "tests/tools/four_ranks.h"
+
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -101,10 +103,7 @@ TEST_F(BenchProgram, TradeoffIsTheSameForAnyNumberOfProcessesAndRanks) {
   EXPECT_NE(serial.find(",lemke,"), std::string::npos);
   EXPECT_EQ(csv("processes", "--jobs 3", ""), serial);
 #ifdef SIGNORINI_MPIRUN
-  EXPECT_EQ(csv("ranks", "",
-                "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 " SIGNORINI_MPIRUN
-                " --oversubscribe -n 4"),
-            serial);
+  EXPECT_EQ(csv("ranks", "", signorini::kFourRanks), serial);
 #endif
 }
 

@@ -1,5 +1,6 @@
 #include "tools/job_list.h"
 
+#include "tests/tools/four_ranks.h"
 #include "tools/job_files.h"
 
 #include <algorithm>
@@ -193,10 +194,6 @@ TEST_F(JobList, AnExceptionIsTheReason) {
 }
 
 #ifdef SIGNORINI_MPIRUN
-const std::string kFourRanks =
-    "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 " SIGNORINI_MPIRUN
-    " --oversubscribe -n 4";
-
 TEST_F(JobList, FourRanksGiveWhatOneProcessGives) {
   const Outcome serial = run("", 1);
   fs::remove_all(kept());

@@ -1,3 +1,5 @@
+#include "tests/tools/four_ranks.h"
+
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -201,9 +203,7 @@ TEST_F(Program, AListOfJobsGivesTheReportThatOneProcessGives) {
   EXPECT_TRUE(std::filesystem::exists(out() + "/scenes/04-ball.sdf"));
 #ifdef SIGNORINI_MPIRUN
   const Outcome ranks =
-      shell("OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 " SIGNORINI_MPIRUN
-            " --oversubscribe -n 4 " SIGNORINI_VALIDATE " --out '" +
-            out() + "' " + scenes);
+      shell(signorini::kFourRanks + " " SIGNORINI_VALIDATE " --out '" + out() + "' " + scenes);
   EXPECT_EQ(ranks.exit_code, 0) << ranks.output;
   EXPECT_EQ(without_times(report()), serial);
 #endif
