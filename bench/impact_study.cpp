@@ -49,7 +49,7 @@ bool shown_infeasible(lcp::Status status) {
   return status == lcp::Status::kInfeasible || status == lcp::Status::kNoSolutionBelow;
 }
 
-/// Of (normal, tangential >= 0) from {tangential <= mu normal}.
+/// Of (normal, tangential >= 0) from {tangential <= mu normal}, apart from what the solvers use.
 double distance_from_cone(double normal, double tangential, double mu) {
   if (tangential <= mu * normal) {
     return 0.0;

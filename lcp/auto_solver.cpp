@@ -217,6 +217,7 @@ Status AutoSolver::iterate(const Problem& problem, const Vector* warm_start,
   bool done = sweeps_first_ && settings_.max_iterations < 0 && sweep(problem, deadline, result);
   for (std::size_t k = 0; !done && k < chain_.size(); ++k) {
     if (is_out_of_reach_ && !chain_[k].pivots) {
+      result.detail = "iterations passed over: M, changed by its own rounding, has no solution";
       continue;
     }
     const int most = settings_.max_iterations >= 0 ? settings_.max_iterations : chain_[k].most;

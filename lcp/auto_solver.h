@@ -56,7 +56,7 @@ struct AutoSettings : SolverSettings {
 /// What another solver solved to rounding only, sticking is given to find the last digits of.
 /// A proof that there is no solution ends it. Where there is none below a Z so far off that M,
 /// changed by its own rounding, has none at all (RayVerdict::defect), only pivoting solvers are
-/// tried further: no iteration gets there, and no certificate could tell.
+/// tried further, and the detail says so: no iteration gets there, and no certificate could tell.
 ///
 /// Solvers that refuse a problem are passed over; lemke only up to 1000 rows, structured-lemke up
 /// to 2000. Each starts from the best iterate so far (the interior

@@ -186,6 +186,7 @@ TEST(AutoSolver, ProvesThatFrictionDoesNotHelpASqueezedBallBeforeItIterates) {
     ASSERT_FALSE(result.attempts.empty());
     EXPECT_EQ(result.attempts.back().solver, "frictionless");
     EXPECT_LE(result.attempts.size(), 2);
+    EXPECT_EQ(result.detail.empty(), slant == 0.0);  // what was passed over is said
   }
 }
 
