@@ -58,7 +58,8 @@ double distance_from_cone(double normal, double tangential, double mu) {
                                     : (tangential - mu * normal) / std::hypot(1.0, mu);
 }
 
-/// Every impulse in its cone and no contact approaching, to the tolerance or the rounding.
+/// Every impulse in its cone and no contact approaching, to what the law allows itself and, since
+/// its impulses were turned into the world's axes and are turned back here, their rounding once more.
 bool is_in_cones(const RandomImpact& impact, const ImpactReport& report) {
   const auto count = static_cast<lcp::Index>(impact.contacts.size());
   ConeProblem cones;
@@ -80,7 +81,8 @@ bool is_in_cones(const RandomImpact& impact, const ImpactReport& report) {
     const double outside = distance_from_cone(normal, tangential.norm(), cones.friction[i]);
     worst = std::max(worst, diagonal[row] * outside);
   }
-  const double allowed = velocity_allowed(cones, z, kConeTolerance);
+  const double rounding = velocity_allowed(cones, z, 0.0);
+  const double allowed = std::max(velocity_allowed(cones, z, kConeTolerance), 1.25 * rounding);
   lcp::Vector after(z.size());
   cones.A().multiply(z.data(), after.data());
   after += cones.problem.q;

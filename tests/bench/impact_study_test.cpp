@@ -44,6 +44,23 @@ TEST(ImpactStudy, WithFrictionImpulsesStayInTheConesAndEnergyNeverRises) {
   EXPECT_LE(counts.worst_safe_gain, 1e-12);
 }
 
+// The blend approaches by all the rounding that it may have, and turning its impulses into the world's
+// axes and back adds some.
+TEST(ImpactStudy, RoundingOfTurnedImpulsesIsNoComplaint) {
+  ImpactOptions options;
+  options.seed = 20261127;
+  options.first = 1203;
+  options.impacts = 1;
+  options.impact = {.mass_ratio = 1e9, .most_friction = 1.0};
+  options.laws = {ImpactLaw::kNewton};
+  options.plain_forms = false;
+  std::ostringstream out;
+  const ImpactCounts counts = run_impact_study(options, out);
+  ASSERT_EQ(counts.rows.size(), 1u);
+  EXPECT_EQ(counts.rows[0].inadmissible, 0);
+  EXPECT_TRUE(counts.passed()) << out.str();
+}
+
 TEST(LawsStudy, ReflectionsHaveAllFiveAndNewtonLacksBreakAwayAndEnergy) {
   std::ostringstream out;
   const std::vector<LawRow> rows = run_laws_study({.impacts = 15}, our_laws(), out);
