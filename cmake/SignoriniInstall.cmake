@@ -42,6 +42,19 @@ if(TARGET signorini_c)  # whose other headers are its own
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/signorini/c ${development})
 endif()
 
+# The guides and the examples, in folders as here, so that links hold.
+set(documentation ${CMAKE_INSTALL_DATAROOTDIR}/doc/signorini)
+foreach(folder . bench c collision core integrations/bullet integrations/dart lcp lcp/io python tools
+               validation validation/report)
+  install(FILES ${PROJECT_SOURCE_DIR}/${folder}/README.md DESTINATION ${documentation}/${folder}
+          ${development})
+endforeach()
+install(FILES ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${PROJECT_SOURCE_DIR}/LICENSE
+        DESTINATION ${documentation} ${development})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs ${PROJECT_SOURCE_DIR}/examples
+        DESTINATION ${documentation} ${development}
+        FILES_MATCHING REGEX "[.](md|png|svg|c|cpp|py)$")
+
 # Of its libraries a static build must name all when it is linked, a shared one its interface.
 set(SIGNORINI_C_NEEDS lcp model core)
 if(TARGET signorini_io)

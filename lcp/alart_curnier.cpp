@@ -121,7 +121,7 @@ Status AlartCurnier::Workspace::solve(const Problem& problem, const AlartCurnier
   most_steps_ =
       settings.max_iterations >= 0 ? settings.max_iterations : AlartCurnierSettings::kDefaultSteps;
   tolerance_ = settings.tolerance;
-  best_.reset(problem);
+  best_.reset(problem, settings.tolerance);
   groups_.set(problem);
   x_.setZero(problem.size());
   if (warm_start != nullptr) {

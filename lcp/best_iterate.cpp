@@ -13,14 +13,16 @@ double BestIterate::merit(const Certificate& certificate) {
              : worst;
 }
 
-void BestIterate::reset(const Problem& problem) {
+void BestIterate::reset(const Problem& problem, double tolerance) {
   problem_ = &problem;
+  tolerance_ = tolerance;
   z_.setZero(problem.size());
-  certificate_ = certifier_.certify(problem, z_);
+  certifier_.start_iterates(problem);
+  certificate_ = certifier_.certify_iterate(problem, z_, tolerance);
 }
 
 Certificate BestIterate::offer(const VectorRef& z) {
-  const Certificate certificate = certifier_.certify(*problem_, z);
+  const Certificate certificate = certifier_.certify_iterate(*problem_, z, tolerance_);
   if (z.allFinite() && merit(certificate) < merit(certificate_)) {
     z_ = z;
     certificate_ = certificate;

@@ -9,10 +9,11 @@ namespace signorini::lcp {
 /// solver can make its answer worse.
 class BestIterate {
  public:
-  /// Forgets everything and holds z = 0.
-  void reset(const Problem& problem);
+  /// Forgets everything and holds z = 0. @param tolerance that iterates are judged by
+  void reset(const Problem& problem, double tolerance);
 
-  /// Certifies z and keeps it if it is better. Anything not finite is refused.
+  /// Certifies z (Certifier::certify_iterate()) and keeps it if it is better. Anything not finite is
+  /// refused.
   /// @return the certificate of this z.
   Certificate offer(const VectorRef& z);
 
@@ -24,6 +25,7 @@ class BestIterate {
 
  private:
   const Problem* problem_ = nullptr;
+  double tolerance_ = 0.0;
   Vector z_;
   Certificate certificate_;
   Certifier certifier_;

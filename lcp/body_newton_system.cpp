@@ -150,6 +150,28 @@ bool BodyNewtonSystem::invert_blocks(const std::vector<Block>& A, const std::vec
 }
 
 /// H = I + G^T D G.
+namespace {
+
+/// sum += left^T right over the d rows of a group, which are `width` numbers apart.
+void add_product(const double* left, const double* right, int d, int width, int count,
+                 double* sum) {
+  if (d == 3) {
+    const double* second = left + width;
+    const double* third = second + width;
+    for (int r = 0; r < count; ++r) {
+      sum[r] += left[r] * right[0] + second[r] * right[width] + third[r] * right[2 * width];
+    }
+    return;
+  }
+  for (int i = 0; i < d; ++i) {
+    for (int r = 0; r < count; ++r) {
+      sum[r] += left[i * width + r] * right[i * width];
+    }
+  }
+}
+
+}  // namespace
+
 void BodyNewtonSystem::assemble(const std::vector<Block>& B) {
   std::fill(values_.begin(), values_.end(), 0.0);
   for (const int position : diagonal_) {
@@ -176,13 +198,8 @@ void BodyNewtonSystem::assemble(const std::vector<Block>& B) {
           const int start = row_offset_[at++];
           for (int c = 0; c < f.dimension; ++c) {
             double* column = values_.data() + outer_[bodies_[f.body].place + c] + start;
-            for (int i = 0; i < d; ++i) {
-              const double right = product_[i * width + f.column + c];
-              const double* left = G + i * width + e.column;
-              for (int r = 0; r < e.dimension; ++r) {
-                column[r] += left[r] * right;
-              }
-            }
+            add_product(G + e.column, product_.data() + f.column + c, d, width, e.dimension,
+                        column);
           }
         }
       }

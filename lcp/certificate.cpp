@@ -419,9 +419,16 @@ void Certifier::bound_sizes(const Problem& problem, const FactoredMatrix& A, con
   }
 }
 
+/// D of a cone, or of a row outside cones.
+double Certifier::scale_of(const Problem& problem, int first, int cone) {
+  const int d = cone < 0 ? 1 : problem.cones[cone].dimension;
+  const Eigen::Matrix3d block = diagonal_block(problem.M, first, d, block_room_);
+  return cone >= 0 ? largest_eigenvalue(block, d) : block(0, 0) > 0.0 ? block(0, 0) : 1.0;
+}
+
 /// The measure of a cone, or of a row outside cones, or a bound of it up to `fine`.
-Certifier::Measure Certifier::bound_group(const Problem& problem, int first, int cone,
-                                          double fine) {
+Certifier::Measure Certifier::bound_group(const Problem& problem, int first, int cone, double fine,
+                                          bool scales_known) {
   const int d = cone < 0 ? 1 : problem.cones[cone].dimension;
   const long double* z = z_.data() + first;
   const long double* w = w_.data() + first;
@@ -447,13 +454,11 @@ Certifier::Measure Certifier::bound_group(const Problem& problem, int first, int
   // A Coulomb cone's normal part by itself: mu |w_T| may hide a w_N < 0.
   sum = std::max(std::sqrt(w_tilde * w_tilde + slip), std::abs(w[0]));
   if (!is_inside || !(sum <= fine)) {
-    if (cone >= 0 && std::all_of(z, z + d, [](long double value) { return value == 0.0L; })) {
-      scale_[first] = 1.0;  // D |P_K(-w~ / D)| is the same for all D
-    } else {
-      const Eigen::Matrix3d block = diagonal_block(problem.M, first, d);
-      scale_[first] = cone >= 0           ? largest_eigenvalue(block, d)
-                      : block(0, 0) > 0.0 ? block(0, 0)
-                                          : 1.0;
+    // Of z_c = 0 D |P_K(-w~ / D)| is the same for all D.
+    const bool any_scale =
+        cone >= 0 && std::all_of(z, z + d, [](long double value) { return value == 0.0L; });
+    if (!scales_known) {
+      scale_[first] = any_scale ? 1.0 : scale_of(problem, first, cone);
     }
     return cone < 0 ? measure_row(first) : measure_cone(problem, cone);
   }
@@ -482,7 +487,8 @@ Certifier::Measure Certifier::bound_group(const Problem& problem, int first, int
 }
 
 /// Adds bounds to the total. @return false where there are none
-bool Certifier::bound(const Problem& problem, const VectorRef& z, double tolerance) {
+bool Certifier::bound(const Problem& problem, const VectorRef& z, double tolerance,
+                      bool scales_known) {
   const auto* A = std::get_if<FactoredMatrix>(&problem.M);
   const Index n = problem.size();
   const double q_inf = n > 0 ? problem.q.cwiseAbs().maxCoeff() : 0.0;
@@ -509,12 +515,12 @@ bool Certifier::bound(const Problem& problem, const VectorRef& z, double toleran
     w_[i] += problem.q[i];
     total.add_row(size_[i], problem.q[i], z_[i]);
   }
-  const double fine = 0.1 * tolerance * q_inf;
+  const double fine = 0.5 * tolerance * q_inf;
   std::size_t cone = 0;
   for (int i = 0; i < n;) {
     const bool starts_cone = cone < problem.cones.size() && problem.cones[cone].normal_row == i;
     const Measure measure =
-        bound_group(problem, i, starts_cone ? static_cast<int>(cone) : -1, fine);
+        bound_group(problem, i, starts_cone ? static_cast<int>(cone) : -1, fine, scales_known);
     if (!measure.is_finite()) {
       return false;
     }
@@ -527,7 +533,7 @@ bool Certifier::bound(const Problem& problem, const VectorRef& z, double toleran
 Certificate Certifier::certify_quickly(const Problem& problem, const VectorRef& z, double tolerance,
                                        Vector* w) {
   totals_.assign(1, Total{});
-  if (bound(problem, z, tolerance)) {
+  if (bound(problem, z, tolerance, false)) {
     Certificate certificate = totals_[0].certificate();
     certificate.backward_error = Certificate::kNaN;
     if (judge(certificate, tolerance, Status::kStalled) == Status::kSolved) {
@@ -539,6 +545,29 @@ Certificate Certifier::certify_quickly(const Problem& problem, const VectorRef& 
     }
   }
   return certify(problem, z, w);
+}
+
+void Certifier::start_iterates(const Problem& problem) {
+  scale_.setOnes(problem.size());
+  std::size_t cone = 0;
+  for (int i = 0; i < problem.size();) {
+    const bool starts_cone = cone < problem.cones.size() && problem.cones[cone].normal_row == i;
+    scale_[i] = scale_of(problem, i, starts_cone ? static_cast<int>(cone) : -1);
+    i += starts_cone ? problem.cones[cone++].dimension : 1;
+  }
+}
+
+Certificate Certifier::certify_iterate(const Problem& problem, const VectorRef& z,
+                                       double tolerance) {
+  totals_.assign(1, Total{});
+  if (bound(problem, z, tolerance, true)) {
+    Certificate certificate = totals_[0].certificate();
+    certificate.backward_error = Certificate::kNaN;
+    if (judge(certificate, tolerance, Status::kStalled) != Status::kSolvedToRounding) {
+      return certificate;
+    }
+  }
+  return certify(problem, z);
 }
 
 Certificate Certifier::certify(const Problem& problem, const VectorRef& z, Vector* w) {

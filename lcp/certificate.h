@@ -85,10 +85,18 @@ class Certifier {
   /// The same where that costs O(n) and shows that z is solved to the tolerance (factored M,
   /// inverse masses that are kept as such, q not 0); else certify(). What is cheap is a bound: the
   /// residuals of groups of rows inside their bounds are at most |w~|, whatever D is, since
-  /// projecting shortens distances, and count as that where it is below a tenth of the tolerance;
+  /// projecting shortens distances, and count as that where it is below half the tolerance;
   /// the floors take |J||W||J^T||z| for |M||z|; backward_error is NaN. All else is as in certify().
   [[nodiscard]] Certificate certify_quickly(const Problem& problem, const VectorRef& z,
                                             double tolerance, Vector* w = nullptr);
+  /// Finds D of every row and cone, which the iterates of a solve have in common. Cost: O(n) for a
+  /// factored M.
+  void start_iterates(const Problem& problem);
+  /// certify_quickly() of an iterate on the way to the solution of the problem that
+  /// start_iterates() was told of, also where it is not solved; certify() where its bounds do not
+  /// hold, and where only the floors make it solved.
+  [[nodiscard]] Certificate certify_iterate(const Problem& problem, const VectorRef& z,
+                                            double tolerance);
   /// One certificate an island, each with its own |q|_inf and floors, as if it were the whole
   /// problem. Where one island is refused (not finite), all are.
   /// @param islands of this problem @param certificates receives islands.count
@@ -136,9 +144,13 @@ class Certifier {
   [[nodiscard]] bool measure(const Problem& problem, const VectorRef& z,
                              const std::vector<int>* island);
   void multiply_by_matrix(const Problem& problem);
-  [[nodiscard]] bool bound(const Problem& problem, const VectorRef& z, double tolerance);
+  /// @param scales_known scale_ is of this problem
+  [[nodiscard]] bool bound(const Problem& problem, const VectorRef& z, double tolerance,
+                           bool scales_known);
   void bound_sizes(const Problem& problem, const FactoredMatrix& A, const VectorRef& z);
-  [[nodiscard]] Measure bound_group(const Problem& problem, int first, int cone, double fine);
+  [[nodiscard]] double scale_of(const Problem& problem, int first, int cone);
+  [[nodiscard]] Measure bound_group(const Problem& problem, int first, int cone, double fine,
+                                    bool scales_known);
   void find_bounds(const Problem& problem);
   [[nodiscard]] Measure measure_row(Index i) const;
   [[nodiscard]] Measure measure_cone(const Problem& problem, std::size_t cone) const;
@@ -152,6 +164,7 @@ class Certifier {
   std::vector<double> absolute_p_, absolute_v_;  // |J^T||z| and |W| times it
   std::vector<long double> size_;                // (|M||z|)_i + |q_i|
   Vector scale_;                                 // D of every row; of a cone at its normal row
+  Vector block_room_;                            // of diagonal_block()
   std::vector<Eigen::Matrix3d> cone_blocks_;     // M_cc
   std::vector<int> cone_of_row_;                 // -1: none
   std::vector<Bounds> bounds_;

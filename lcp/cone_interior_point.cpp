@@ -176,6 +176,7 @@ Status ConeInteriorPoint::Workspace::polish(const Problem& problem, const Deadli
     static_cast<SolverSettings&>(settings) = settings_;
     settings.recorder = nullptr;
     settings.certify_islands = false;
+    settings.quick_certificate = true;
     settings.max_iterations = settings_.polish_steps;
     settings.proximal = 1e-6;
     settings.time_limit = time_left;
@@ -192,7 +193,7 @@ Status ConeInteriorPoint::Workspace::polish(const Problem& problem, const Deadli
 Status ConeInteriorPoint::Workspace::solve(const Problem& problem, const Vector* warm_start,
                                            const Deadline& deadline, Result& result) {
   result.statistics = {.iterations = 0, .factorizations = 0, .factor_bytes = 0};
-  best_.reset(problem);
+  best_.reset(problem, settings_.tolerance);
   if (warm_start != nullptr) {
     best_.offer(*warm_start);
   }

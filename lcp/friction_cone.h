@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 namespace signorini::lcp {
 
@@ -13,7 +14,14 @@ namespace signorini::lcp {
 /// |x_T|.
 template <typename Scalar>
 Scalar tangential_norm(int dimension, const Scalar* x) {
-  return dimension == 2 ? std::abs(x[1]) : std::hypot(x[1], x[2]);
+  if (dimension == 2) {
+    return std::abs(x[1]);
+  }
+  if constexpr (std::is_same_v<Scalar, long double>) {  // whose range holds the squares of doubles
+    return std::sqrt(x[1] * x[1] + x[2] * x[2]);
+  } else {
+    return std::hypot(x[1], x[2]);
+  }
 }
 
 /// p = P_K(x), the nearest point of K. x and p may be the same.

@@ -295,14 +295,16 @@ bool InteriorPoint::Workspace::sweeps_are_cheap() const {
 /// The answer of a few sweeps, from the warm start if there is one.
 const Vector& InteriorPoint::Workspace::sweep(const Problem& problem, const Vector* warm_start) {
   std::unique_ptr<Nncg>& sweeper = warm_start == nullptr ? sweeper_ : warm_sweeper_;
-  sweeps_ = warm_start == nullptr ? kSweeps : kWarmSweeps;
-  if (sweeper == nullptr) {
+  if (sweeper == nullptr || std::isfinite(settings_.time_limit)) {
     NncgSettings settings;
     settings.tolerance = settings_.tolerance;
-    settings.max_iterations = sweeps_;
+    settings.max_iterations = warm_start == nullptr ? kSweeps : kWarmSweeps;
+    settings.time_limit = std::max(settings_.time_limit - deadline_->elapsed_seconds(),
+                                   std::numeric_limits<double>::min());
     sweeper = std::make_unique<Nncg>(settings);
   }
   sweeper->solve(problem, swept_, warm_start);
+  sweeps_ = swept_.statistics.iterations;
   return swept_.z;
 }
 

@@ -99,7 +99,7 @@ Status Lemke::solve_plain(const Problem& problem, const Vector* warm_start,
   long_paths_ = long_path_pivots_ = 0;
   early_stop_ = false;
   polish_.reset_counts();
-  best_.reset(problem);
+  best_.reset(problem, settings_.tolerance);
   Status status = Status::kNumericalBreakdown;
   if (free_count_ == 0 && (problem.q.array() >= 0.0).all()) {
     status = Status::kSolved;  // z = 0

@@ -180,7 +180,7 @@ Status Nsgs::Workspace::solve(const Problem& problem, const NsgsSettings& settin
   result.statistics = {.iterations = 0};
   int& done = result.statistics.iterations;
   set(problem);
-  best_.reset(problem);
+  best_.reset(problem, settings.tolerance);
   z_.setZero(problem.size());
   if (warm_start != nullptr) {
     z_ = *warm_start;

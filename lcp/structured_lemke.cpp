@@ -53,7 +53,7 @@ std::string StructuredLemke::refuses(const Problem& problem) const {
 Status StructuredLemke::iterate(const Problem& problem, const Vector* warm_start,
                                 const Deadline& deadline, Result& result) {
   pivots_ = refinements_ = factorizations_ = double_exchanges_ = 0;
-  best_.reset(problem);
+  best_.reset(problem, settings_.tolerance);
   result.z = best_.z();
   if (!scaled_.assign(problem)) {
     result.detail = "M is not finite once it is formed and scaled";

@@ -184,7 +184,7 @@ bool IslandSolver::attempt(const lcp::Problem& problem, const Try& tried, int mo
 /// The start, or 0 where that is better: what a budget that pays for no solver gives.
 void IslandSolver::certify_start(const lcp::Problem& problem, const lcp::Vector* start,
                                  lcp::Result& result) {
-  start_.reset(problem);
+  start_.reset(problem, tolerance(problem));
   if (start != nullptr) {
     (void)start_.offer(*start);
   }

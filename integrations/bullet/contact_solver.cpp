@@ -1,7 +1,9 @@
 #include <signorini/integrations/bullet/contact_solver.h>
+#include <signorini/lcp/cone_interior_point.h>
 #include <signorini/lcp/friction_cone.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -14,12 +16,27 @@ constexpr double kMostAccurate = 1e-12;  // but no lower
 constexpr double kSoftness = 1e-3;       // of soft rows, beside A_ii
 constexpr double kWorthStarting = 1.0;   // z = 0 is no worse
 constexpr lcp::Index kFewRows = 100;     // up to which dense pivoting is the fastest
+constexpr double kFarOff = 0.3;          // a start that many rows are not worth trying from
+constexpr int kFewSteps = 40;            // factorisations of Alart-Curnier
 
 lcp::SolverSettings solver_settings(const Settings& settings) {
   settings.validate();
   return {.tolerance = settings.tolerance,
           .time_limit = settings.time_limit,
           .quick_certificate = true};
+}
+
+lcp::SolverSettings few_steps(lcp::SolverSettings settings) {
+  settings.max_iterations = kFewSteps;
+  return settings;
+}
+
+/// The interior point without its own steps at the end: those are tried apart.
+std::unique_ptr<lcp::Solver> from_inside(const lcp::SolverSettings& settings) {
+  lcp::ConeInteriorPointSettings own;
+  static_cast<lcp::SolverSettings&>(own) = settings;
+  own.polish_steps = 0;
+  return std::make_unique<lcp::ConeInteriorPoint>(own);
 }
 
 lcp::SolverSettings more_accurate(lcp::SolverSettings settings) {
@@ -68,6 +85,12 @@ bool has_slip(const lcp::Problem& problem, const lcp::Vector& z) {
          });
 }
 
+/// Whether there are so many cones, and so little is known of their forces, that steps from it are
+/// slower than the way from the inside.
+bool is_far_off(const lcp::Problem& problem, const lcp::Result& best) {
+  return !problem.cones.empty() && problem.size() > kFewRows && !(merit(best.certificate) < kFarOff);
+}
+
 }  // namespace
 
 void Settings::validate() const {
@@ -87,10 +110,14 @@ std::string_view to_string(Route route) {
 
 ContactSolver::ContactSolver(const Settings& settings)
     : settings_(solver_settings(settings)),
+      accurate_(more_accurate(settings_)),
+      few_steps_(few_steps(settings_)),
       recorder_(settings.recorder),
       clock_(settings.time_limit) {
-  sticking_ = lcp::make_solver("interior-point", more_accurate(settings_));
-  coupled_ = lcp::make_solver("alart-curnier", settings_);
+  sticking_ = lcp::make_solver("interior-point", accurate_);
+  boxes_ = lcp::make_solver("alart-curnier", settings_);
+  steps_ = lcp::make_solver("alart-curnier", few_steps_);
+  inside_ = from_inside(accurate_);
   anything_ = lcp::make_solver("auto", settings_);
 }
 
@@ -128,13 +155,15 @@ bool ContactSolver::has_time(std::unique_ptr<lcp::Solver>& solver, lcp::Result& 
   if (!std::isfinite(settings_.time_limit)) {
     return true;
   }
-  lcp::SolverSettings left = &solver == &sticking_ ? more_accurate(settings_) : settings_;
+  lcp::SolverSettings left = &solver == &sticking_ || &solver == &inside_ ? accurate_
+                             : &solver == &steps_                         ? few_steps_
+                                                                          : settings_;
   left.time_limit -= clock_.elapsed_seconds();
   if (!(left.time_limit > 0.0)) {
     result.status = lcp::Status::kTimeLimit;
     return false;
   }
-  solver = lcp::make_solver(solver->name(), left);
+  solver = &solver == &inside_ ? from_inside(left) : lcp::make_solver(solver->name(), left);
   return true;
 }
 
@@ -219,6 +248,21 @@ void ContactSolver::try_solver(std::unique_ptr<lcp::Solver>& solver, std::string
   keep_better(solver->name(), reason, result);
 }
 
+/// Friction cones, by steps from the start and from the inside.
+void ContactSolver::try_cones(const lcp::Problem& problem, lcp::Result& result) {
+  std::array<std::unique_ptr<lcp::Solver>*, 2> order = {&steps_, &inside_};
+  if (is_far_off(problem, result)) {
+    std::swap(order[0], order[1]);
+  }
+  for (std::unique_ptr<lcp::Solver>* solver : order) {
+    const bool is_done =
+        lcp::is_solved(result.status) || result.status == lcp::Status::kInvalidInput;
+    if (!is_done && (*solver)->refuses(problem).empty()) {
+      try_solver(*solver, "friction", problem, result);
+    }
+  }
+}
+
 Route ContactSolver::solve(lcp::Problem& problem, const lcp::Vector* warm_start,
                            lcp::Result& result) {
   clock_ = lcp::Deadline(settings_.time_limit);
@@ -234,13 +278,18 @@ Route ContactSolver::solve(lcp::Problem& problem, const lcp::Vector* warm_start,
       lcp::start_result(problem.size(), result);
     }
     route = has_friction ? Route::kSticking : Route::kBounds;
-    if (!has_friction || warm_start == nullptr || !has_slip(problem, *warm_start)) {
+    const bool may_stick = warm_start == nullptr || !has_slip(problem, *warm_start);
+    const bool has_start = warm_start != nullptr && !warm_start->isZero(0.0);
+    const bool is_far = has_start && is_far_off(problem, result);
+    if (!has_friction || (may_stick && !is_far)) {
       try_sticking(problem, warm_start, result);
     }
     if (!is_done() && has_friction) {
       route = Route::kCoupled;
-      if (!problem.cones.empty() || problem.size() > kFewRows) {
-        try_solver(coupled_, "friction", problem, result);
+      if (!problem.cones.empty()) {
+        try_cones(problem, result);
+      } else if (problem.size() > kFewRows) {
+        try_solver(boxes_, "friction", problem, result);
       }
     }
     if (!is_done()) {

@@ -33,8 +33,10 @@ enum class Route : std::uint8_t {
 ///    the certificate of the coupled problem then says. Redundant contacts leave a choice of z;
 ///    with the tangents soft first it falls on one with little friction. Not tried where the warm
 ///    start has a contact at its friction bound.
-/// 3. Else the coupled problem is solved, from the best z known: small ones with box friction by
-///    Dantzig, others by Alart-Curnier, and what these do not solve by `auto`.
+/// 3. Else the coupled problem is solved, from the best z known. Box friction: small problems by
+///    Dantzig, others by Alart-Curnier. Cones: a few steps of Alart-Curnier, before or (many rows
+///    whose start is far off) after the interior point over the cones. What these do not solve is
+///    left to `auto`.
 ///
 /// Sticking is solved a hundred times more accurately than the tolerance asks, which is cheap, so
 /// that the answer still holds in the steps that follow.
@@ -57,14 +59,17 @@ class ContactSolver {
   void try_sticking(lcp::Problem& problem, const lcp::Vector* warm_start, lcp::Result& result);
   void try_solver(std::unique_ptr<lcp::Solver>& solver, std::string_view reason,
                   const lcp::Problem& problem, lcp::Result& result);
+  void try_cones(const lcp::Problem& problem, lcp::Result& result);
   bool has_time(std::unique_ptr<lcp::Solver>& solver, lcp::Result& result);
   void keep_better(std::string_view solver, std::string_view reason, lcp::Result& result);
   void record(const lcp::Problem& problem, const lcp::Vector* warm_start, lcp::Result& result);
 
-  lcp::SolverSettings settings_;
+  lcp::SolverSettings settings_, accurate_, few_steps_;
   lcp::SolveRecorder* recorder_;
   std::unique_ptr<lcp::Solver> sticking_;  // bounds and free rows
-  std::unique_ptr<lcp::Solver> coupled_;   // friction
+  std::unique_ptr<lcp::Solver> boxes_;     // friction
+  std::unique_ptr<lcp::Solver> steps_;     // cones: few from a start
+  std::unique_ptr<lcp::Solver> inside_;    // cones
   std::unique_ptr<lcp::Solver> anything_;
   lcp::Certifier certifier_;
   lcp::Result one_;

@@ -594,7 +594,7 @@ Problem two_bodies(std::mt19937_64& random) {
   return problem;
 }
 
-TEST(QuickCertificate, GivesTheSameVerdictAndNoSmallerNumbers) {
+TEST(QuickCertificate, GivesTheSameVerdictAndNoSmallerNumbersAlsoOfIterates) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
   Certifier certifier;
@@ -625,6 +625,18 @@ TEST(QuickCertificate, GivesTheSameVerdictAndNoSmallerNumbers) {
     EXPECT_NEAR(quick.complementarity, full.complementarity, 1e-14 * full.complementarity + 1e-18);
     EXPECT_EQ(quick.cone_violation, full.cone_violation);
     quick_ones += std::isnan(quick.backward_error) ? 1 : 0;
+    certifier.start_iterates(problem);
+    const Certificate iterate = certifier.certify_iterate(problem, z, kTolerance);
+    EXPECT_EQ(judge(iterate, kTolerance, Status::kStalled),
+              judge(full, kTolerance, Status::kStalled));
+    EXPECT_TRUE(std::isnan(iterate.backward_error));  // a bound, solved or not
+    EXPECT_GE(iterate.rounding_floor, full.rounding_floor * (1.0 - 1e-12));
+    if (full.unit_free_residual > kTolerance) {
+      EXPECT_NEAR(iterate.unit_free_residual / full.unit_free_residual, 1.0, 1e-12);
+    }
+    if (full.natural_residual > kTolerance) {
+      EXPECT_NEAR(iterate.natural_residual / full.natural_residual, 1.0, 1e-12);
+    }
   }
   EXPECT_GT(quick_ones, 20);
   EXPECT_LT(quick_ones, 180);
@@ -637,6 +649,18 @@ TEST(QuickCertificate, GivesTheSameVerdictAndNoSmallerNumbers) {
   EXPECT_EQ(certifier.certify_quickly(problem, Vector::Constant(7, std::nan("")), kTolerance)
                 .unit_free_residual,
             kInfinity);
+  certifier.start_iterates(problem);
+  EXPECT_EQ(certifier.certify_iterate(problem, Vector::Constant(7, std::nan("")), kTolerance)
+                .unit_free_residual,
+            kInfinity);
+  // Where the floors alone make it solved: certify() itself.
+  problem = two_bodies(random);
+  const Vector z{{1.0, 0.2, -0.1, 2.0, 0.5, 0.5, 0.7}};
+  Vector w(7);
+  multiply(problem.M, z.data(), w.data());
+  problem.q = -w;
+  certifier.start_iterates(problem);
+  EXPECT_FALSE(std::isnan(certifier.certify_iterate(problem, z, 1e-17).backward_error));
 }
 
 // mu |w_T| = -w_N: w~ is 0 while the contact closes with 0.1.

@@ -353,6 +353,11 @@ TEST(InteriorPoint, StartsLargePilesFromSweeps) {
   const AllocationCount allocations;
   solver.solve(problem, result);
   EXPECT_EQ(allocations.count(), 0);
+  InteriorPointSettings at_once;
+  at_once.time_limit = 1e-9;
+  InteriorPoint(at_once).solve(problem, result);
+  EXPECT_EQ(result.status, Status::kTimeLimit);
+  EXPECT_EQ(result.detail, "");  // no sweeps
 }
 
 TEST(InteriorPoint, SolvesPilesThatSweepsDoNotSettle) {

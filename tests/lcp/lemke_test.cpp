@@ -232,7 +232,7 @@ TEST(ActiveSetPolish, SolvesAnActiveSetWithRowsOfZeroQ) {
     // Normal, the direction against the sliding, the slip speed.
     std::vector<char> active{1, 0, 1, 0, 0, 1};
     BestIterate best;
-    best.reset(problem);
+    best.reset(problem, 1e-12);
     ActiveSetPolish polish;
     polish.reset_counts();
     EXPECT_TRUE(
