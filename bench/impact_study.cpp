@@ -59,7 +59,8 @@ double distance_from_cone(double normal, double tangential, double mu) {
 }
 
 /// Every impulse in its cone and no contact approaching, to what the law allows itself and, since
-/// its impulses were turned into the world's axes and are turned back here, their rounding once more.
+/// its impulses were turned into the world's axes and are turned back here, their rounding once
+/// more.
 bool is_in_cones(const RandomImpact& impact, const ImpactReport& report) {
   const auto count = static_cast<lcp::Index>(impact.contacts.size());
   ConeProblem cones;

@@ -12,8 +12,8 @@ class BestIterate {
   /// Forgets everything and holds z = 0. @param tolerance that iterates are judged by
   void reset(const Problem& problem, double tolerance);
 
-  /// Certifies z (Certifier::certify_iterate()) and keeps it if it is better. Anything not finite is
-  /// refused.
+  /// Certifies z (Certifier::certify_iterate()) and keeps it if it is better. Anything not finite
+  /// is refused.
   /// @return the certificate of this z.
   Certificate offer(const VectorRef& z);
 

@@ -31,11 +31,13 @@ lcp::SolverSettings few_steps(lcp::SolverSettings settings) {
   return settings;
 }
 
-/// The interior point without its own steps at the end: those are tried apart.
-std::unique_ptr<lcp::Solver> from_inside(const lcp::SolverSettings& settings) {
+std::unique_ptr<lcp::Solver> make(std::string_view name, const lcp::SolverSettings& settings) {
+  if (name != "cone-interior-point") {
+    return lcp::make_solver(name, settings);
+  }
   lcp::ConeInteriorPointSettings own;
   static_cast<lcp::SolverSettings&>(own) = settings;
-  own.polish_steps = 0;
+  own.polish_steps = 0;  // steps are tried apart
   return std::make_unique<lcp::ConeInteriorPoint>(own);
 }
 
@@ -85,10 +87,15 @@ bool has_slip(const lcp::Problem& problem, const lcp::Vector& z) {
          });
 }
 
+bool is_done(const lcp::Result& result) {
+  return lcp::is_solved(result.status) || result.status == lcp::Status::kInvalidInput;
+}
+
 /// Whether there are so many cones, and so little is known of their forces, that steps from it are
 /// slower than the way from the inside.
 bool is_far_off(const lcp::Problem& problem, const lcp::Result& best) {
-  return !problem.cones.empty() && problem.size() > kFewRows && !(merit(best.certificate) < kFarOff);
+  return !problem.cones.empty() && problem.size() > kFewRows &&
+         !(merit(best.certificate) < kFarOff);
 }
 
 }  // namespace
@@ -108,18 +115,18 @@ std::string_view to_string(Route route) {
   return "";
 }
 
+ContactSolver::Method::Method(std::string_view name, const lcp::SolverSettings& told)
+    : settings(told), solver(make(name, told)) {}
+
 ContactSolver::ContactSolver(const Settings& settings)
     : settings_(solver_settings(settings)),
-      accurate_(more_accurate(settings_)),
-      few_steps_(few_steps(settings_)),
       recorder_(settings.recorder),
-      clock_(settings.time_limit) {
-  sticking_ = lcp::make_solver("interior-point", accurate_);
-  boxes_ = lcp::make_solver("alart-curnier", settings_);
-  steps_ = lcp::make_solver("alart-curnier", few_steps_);
-  inside_ = from_inside(accurate_);
-  anything_ = lcp::make_solver("auto", settings_);
-}
+      sticking_("interior-point", more_accurate(settings_)),
+      boxes_("alart-curnier", settings_),
+      steps_("alart-curnier", few_steps(settings_)),
+      inside_("cone-interior-point", more_accurate(settings_)),
+      anything_("auto", settings_),
+      clock_(settings.time_limit) {}
 
 bool ContactSolver::is_still_solved(const lcp::Problem& problem, const lcp::Vector& z,
                                     lcp::Result& result) {
@@ -151,19 +158,17 @@ void ContactSolver::keep_better(std::string_view solver, std::string_view reason
 }
 
 /// Gives a solver what is left of the time. @return false if nothing is
-bool ContactSolver::has_time(std::unique_ptr<lcp::Solver>& solver, lcp::Result& result) {
+bool ContactSolver::has_time(Method& method, lcp::Result& result) {
   if (!std::isfinite(settings_.time_limit)) {
     return true;
   }
-  lcp::SolverSettings left = &solver == &sticking_ || &solver == &inside_ ? accurate_
-                             : &solver == &steps_                         ? few_steps_
-                                                                          : settings_;
+  lcp::SolverSettings left = method.settings;
   left.time_limit -= clock_.elapsed_seconds();
   if (!(left.time_limit > 0.0)) {
     result.status = lcp::Status::kTimeLimit;
     return false;
   }
-  solver = &solver == &inside_ ? from_inside(left) : lcp::make_solver(solver->name(), left);
+  method.solver = make(method.solver->name(), left);
   return true;
 }
 
@@ -207,7 +212,7 @@ void ContactSolver::try_sticking(lcp::Problem& problem, const lcp::Vector* warm_
       return;
     }
     soften(problem);
-    sticking_->solve(soft_, one_, warm_start);
+    sticking_.solver->solve(soft_, one_, warm_start);
     add(total_, one_.statistics);
     start_ = one_.z;
     warm_start = &start_;
@@ -219,7 +224,7 @@ void ContactSolver::try_sticking(lcp::Problem& problem, const lcp::Vector* warm_
   limits_.clear();
   std::swap(cones_, problem.cones);
   std::swap(limits_, problem.limits);
-  sticking_->solve(problem, one_, warm_start);
+  sticking_.solver->solve(problem, one_, warm_start);
   std::swap(cones_, problem.cones);
   std::swap(limits_, problem.limits);
   if (one_.status != lcp::Status::kInvalidInput) {
@@ -228,37 +233,36 @@ void ContactSolver::try_sticking(lcp::Problem& problem, const lcp::Vector* warm_
     }
     one_.status = lcp::judge(one_.certificate, settings_.tolerance, lcp::Status::kStalled);
   }
-  keep_better(sticking_->name(), has_friction ? "as if nothing slipped" : "no friction", result);
+  keep_better(sticking_.solver->name(), has_friction ? "as if nothing slipped" : "no friction",
+              result);
 }
 
 /// Solves the problem as it is, from the best z known.
-void ContactSolver::try_solver(std::unique_ptr<lcp::Solver>& solver, std::string_view reason,
-                               const lcp::Problem& problem, lcp::Result& result) {
-  if (!has_time(solver, result)) {
+void ContactSolver::try_solver(Method& method, std::string_view reason, const lcp::Problem& problem,
+                               lcp::Result& result) {
+  if (!has_time(method, result)) {
     return;
   }
   const bool has_start = merit(result.certificate) < kWorthStarting;
   if (has_start) {
     start_ = result.z;
   }
-  solver->solve(problem, one_, has_start ? &start_ : nullptr);
+  method.solver->solve(problem, one_, has_start ? &start_ : nullptr);
   if (!lcp::is_solved(one_.status) && one_.status != lcp::Status::kInvalidInput) {
     one_.status = lcp::judge(one_.certificate, settings_.tolerance, one_.status);
   }
-  keep_better(solver->name(), reason, result);
+  keep_better(method.solver->name(), reason, result);
 }
 
 /// Friction cones, by steps from the start and from the inside.
 void ContactSolver::try_cones(const lcp::Problem& problem, lcp::Result& result) {
-  std::array<std::unique_ptr<lcp::Solver>*, 2> order = {&steps_, &inside_};
+  std::array<Method*, 2> order = {&steps_, &inside_};
   if (is_far_off(problem, result)) {
     std::swap(order[0], order[1]);
   }
-  for (std::unique_ptr<lcp::Solver>* solver : order) {
-    const bool is_done =
-        lcp::is_solved(result.status) || result.status == lcp::Status::kInvalidInput;
-    if (!is_done && (*solver)->refuses(problem).empty()) {
-      try_solver(*solver, "friction", problem, result);
+  for (Method* method : order) {
+    if (!is_done(result) && method->solver->refuses(problem).empty()) {
+      try_solver(*method, "friction", problem, result);
     }
   }
 }
@@ -269,9 +273,6 @@ Route ContactSolver::solve(lcp::Problem& problem, const lcp::Vector* warm_start,
   attempts_.clear();
   total_ = {};
   const bool has_friction = !problem.cones.empty() || !problem.limits.empty();
-  const auto is_done = [&] {
-    return lcp::is_solved(result.status) || result.status == lcp::Status::kInvalidInput;
-  };
   Route route = Route::kUnchanged;
   if (warm_start == nullptr || !is_still_solved(problem, *warm_start, result)) {
     if (warm_start == nullptr) {
@@ -284,7 +285,7 @@ Route ContactSolver::solve(lcp::Problem& problem, const lcp::Vector* warm_start,
     if (!has_friction || (may_stick && !is_far)) {
       try_sticking(problem, warm_start, result);
     }
-    if (!is_done() && has_friction) {
+    if (!is_done(result) && has_friction) {
       route = Route::kCoupled;
       if (!problem.cones.empty()) {
         try_cones(problem, result);
@@ -292,7 +293,7 @@ Route ContactSolver::solve(lcp::Problem& problem, const lcp::Vector* warm_start,
         try_solver(boxes_, "friction", problem, result);
       }
     }
-    if (!is_done()) {
+    if (!is_done(result)) {
       try_solver(anything_, has_friction ? "friction" : "not solved yet", problem, result);
     }
     result.statistics = total_;

@@ -54,23 +54,30 @@ class ContactSolver {
   Route solve(lcp::Problem& problem, const lcp::Vector* warm_start, lcp::Result& result);
 
  private:
+  /// A solver, and what it was told.
+  struct Method {
+    Method(std::string_view name, const lcp::SolverSettings& settings);
+    lcp::SolverSettings settings;
+    std::unique_ptr<lcp::Solver> solver;
+  };
+
   bool is_still_solved(const lcp::Problem& problem, const lcp::Vector& z, lcp::Result& result);
   void soften(const lcp::Problem& problem);
   void try_sticking(lcp::Problem& problem, const lcp::Vector* warm_start, lcp::Result& result);
-  void try_solver(std::unique_ptr<lcp::Solver>& solver, std::string_view reason,
-                  const lcp::Problem& problem, lcp::Result& result);
+  void try_solver(Method& method, std::string_view reason, const lcp::Problem& problem,
+                  lcp::Result& result);
   void try_cones(const lcp::Problem& problem, lcp::Result& result);
-  bool has_time(std::unique_ptr<lcp::Solver>& solver, lcp::Result& result);
+  bool has_time(Method& method, lcp::Result& result);
   void keep_better(std::string_view solver, std::string_view reason, lcp::Result& result);
   void record(const lcp::Problem& problem, const lcp::Vector* warm_start, lcp::Result& result);
 
-  lcp::SolverSettings settings_, accurate_, few_steps_;
+  lcp::SolverSettings settings_;
   lcp::SolveRecorder* recorder_;
-  std::unique_ptr<lcp::Solver> sticking_;  // bounds and free rows
-  std::unique_ptr<lcp::Solver> boxes_;     // friction
-  std::unique_ptr<lcp::Solver> steps_;     // cones: few from a start
-  std::unique_ptr<lcp::Solver> inside_;    // cones
-  std::unique_ptr<lcp::Solver> anything_;
+  Method sticking_;  // bounds and free rows
+  Method boxes_;     // friction
+  Method steps_;     // cones: few from a start
+  Method inside_;    // cones
+  Method anything_;
   lcp::Certifier certifier_;
   lcp::Result one_;
   lcp::Vector start_;

@@ -44,8 +44,8 @@ TEST(ImpactStudy, WithFrictionImpulsesStayInTheConesAndEnergyNeverRises) {
   EXPECT_LE(counts.worst_safe_gain, 1e-12);
 }
 
-// The blend approaches by all the rounding that it may have, and turning its impulses into the world's
-// axes and back adds some.
+// The blend approaches by all the rounding that it may have, and turning its impulses into the
+// world's axes and back adds some.
 TEST(ImpactStudy, RoundingOfTurnedImpulsesIsNoComplaint) {
   ImpactOptions options;
   options.seed = 20261127;
