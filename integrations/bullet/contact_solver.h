@@ -32,7 +32,7 @@ enum class Route : std::uint8_t {
 ///    factorisations. If its z keeps all friction bounds it solves the coupled problem too, which
 ///    the certificate of the coupled problem then says. Redundant contacts leave a choice of z;
 ///    with the tangents soft first it falls on one with little friction. Not tried where the warm
-///    start has a contact at its friction bound.
+///    start has a contact at its friction bound, nor with many cones whose start is far off.
 /// 3. Else the coupled problem is solved, from the best z known. Box friction: small problems by
 ///    Dantzig, others by Alart-Curnier. Cones: a few steps of Alart-Curnier, before or (many rows
 ///    whose start is far off) after the interior point over the cones. What these do not solve is
