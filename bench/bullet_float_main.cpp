@@ -4,12 +4,10 @@
 
 #include "bench/scene_trade.h"
 
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <stdexcept>
-#include <sys/prctl.h>
 
 namespace {
 
@@ -27,7 +25,6 @@ std::string run(const std::string& scene, const std::string& setting, int diviso
 }  // namespace
 
 int main(int argc, char** argv) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (argc != 4 || std::atoi(argv[3]) < 1) {
     std::fputs("usage: signorini-bullet-float SCENE SETTING DIVISOR\n", stderr);
     return 64;

@@ -12,7 +12,7 @@ namespace signorini::bench {
 /// Random integers, and nothing else.
 class Draw {
  public:
-  explicit Draw(std::mt19937_64 random) : random_(std::move(random)) {}
+  explicit Draw(const std::mt19937_64& random) : random_(random) {}
   int integer(int least, int most) {
     return std::uniform_int_distribution<int>(least, most)(random_);
   }

@@ -2,6 +2,7 @@
 
 #include <signorini/lcp/problem.h>
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -53,18 +54,24 @@ struct PeerSettings {
 /// A solver by name.
 struct PeerEntry {
   std::string name;                 ///< "ode-dantzig"
-  std::string library;              ///< "Signorini", "Bullet", "ODE", "DART", "Siconos"
+  std::string library;              ///< "Signorini", "Bullet", "Bullet float", "ODE", ...
   bool needs_dense = true;          ///< it takes n^2 numbers
   bool counts_sweeps = false;       ///< see Peer::set_sweeps()
   bool may_be_regularised = false;  ///< a Dantzig: worth trying with A_ii (1 + 1e-10)
   /// Why it cannot take this problem, or empty.
   std::function<std::string(const lcp::Problem& problem)> refuses;
   std::function<std::unique_ptr<Peer>(const PeerSettings& settings)> make;
+  /// A program that is given a PeerTask and the solver's name, for a library that cannot be in this
+  /// one; empty: `make` and this one.
+  std::filesystem::path program = {};
 };
 
 /// Adds the solvers of one library; those that this build has are called by all_peers().
 void add_signorini_peers(std::vector<PeerEntry>& entries);
 void add_bullet_peers(std::vector<PeerEntry>& entries);
+/// The same in single precision, in a program of its own beside this one
+/// (bullet_float_peer_main.cpp); none where that was not built.
+void add_bullet_float_peers(std::vector<PeerEntry>& entries);
 void add_ode_peers(std::vector<PeerEntry>& entries);
 void add_dart_peers(std::vector<PeerEntry>& entries);
 void add_siconos_peers(std::vector<PeerEntry>& entries);

@@ -1,13 +1,12 @@
 #include "bench/peer_runner.h"
 
+#include "bench/peer_task.h"
+#include "tools/byte_archive.h"
 #include "tools/stopwatch.h"
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
-#include <cstring>
-#include <limits>
-#include <stdexcept>
+#include <vector>
 
 namespace signorini::bench {
 namespace {
@@ -18,81 +17,15 @@ constexpr int kMostRepeats = 1000;
 /// What a child sends home.
 struct TimedAnswer {
   PeerAnswer answer;
+  std::vector<double> z = {};  ///< of the answer, on its way
   double seconds = -1.0;
   double first_seconds = -1.0;
   int repeats = 0;
 };
-
-/// Numbers and texts as bytes, read back in the order they were written. Parent and child are the
-/// same program: no byte order, no versions.
-class ByteWriter {
- public:
-  template <typename Number>
-  void number(Number value) {
-    bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
-  }
-  void block(const void* data, std::size_t bytes) {
-    number(std::uint64_t{bytes});
-    bytes_.append(static_cast<const char*>(data), bytes);
-  }
-  [[nodiscard]] std::string take() { return std::move(bytes_); }
-
- private:
-  std::string bytes_;
-};
-
-class ByteReader {
- public:
-  explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}
-  template <typename Number>
-  Number number() {
-    Number value;
-    std::memcpy(&value, next(sizeof value).data(), sizeof value);
-    return value;
-  }
-  std::string_view block() { return next(number<std::uint64_t>()); }
-
- private:
-  std::string_view next(std::size_t count) {
-    if (bytes_.size() < count) {
-      throw std::runtime_error("the child's answer is cut off");
-    }
-    const std::string_view taken = bytes_.substr(0, count);
-    bytes_.remove_prefix(count);
-    return taken;
-  }
-  std::string_view bytes_;
-};
-
-std::string to_bytes(const TimedAnswer& timed) {
-  ByteWriter writer;
-  writer.number(timed.seconds);
-  writer.number(timed.first_seconds);
-  writer.number(timed.repeats);
-  writer.number(timed.answer.claim);
-  writer.number(timed.answer.iterations);
-  writer.number(timed.answer.pivots);
-  writer.number(timed.answer.factorizations);
-  writer.block(timed.answer.said.data(), timed.answer.said.size());
-  writer.block(timed.answer.z.data(), sizeof(double) * timed.answer.z.size());
-  return writer.take();
-}
-
-TimedAnswer from_bytes(std::string_view bytes) {
-  ByteReader reader(bytes);
-  TimedAnswer timed;
-  timed.seconds = reader.number<double>();
-  timed.first_seconds = reader.number<double>();
-  timed.repeats = reader.number<int>();
-  timed.answer.claim = reader.number<Claim>();
-  timed.answer.iterations = reader.number<int>();
-  timed.answer.pivots = reader.number<int>();
-  timed.answer.factorizations = reader.number<int>();
-  timed.answer.said = reader.block();
-  const std::string_view z = reader.block();
-  timed.answer.z.resize(static_cast<lcp::Index>(z.size() / sizeof(double)));
-  std::memcpy(timed.answer.z.data(), z.data(), z.size());
-  return timed;
+void visit_fields(auto& archive, tools::Reflects<TimedAnswer> auto& timed) {
+  archive(timed.answer.claim, timed.answer.said, timed.z, timed.answer.iterations,
+          timed.answer.pivots, timed.answer.factorizations, timed.seconds, timed.first_seconds,
+          timed.repeats);
 }
 
 bool is_answer(const lcp::Vector& z, const lcp::Problem& problem) {
@@ -194,6 +127,19 @@ Verdict judge_answer(const lcp::Certificate& certificate, bool is_finite, Claim 
   return claim == Claim::kSolved || !is_finite ? Verdict::kWrong : Verdict::kUnsolved;
 }
 
+std::string measure_peer(const PeerEntry& entry, const lcp::Problem& given,
+                         const lcp::Problem& judged, const PeerSettings& settings,
+                         const RunLimits& limits, const std::function<void()>& loaded) {
+  const std::unique_ptr<Peer> peer = entry.make(settings);
+  peer->load(given);
+  loaded();
+  TimedAnswer timed = entry.counts_sweeps
+                          ? solve_with_enough_sweeps(*peer, judged, settings.tolerance, limits)
+                          : solve_repeatedly(*peer, limits);
+  timed.z.assign(timed.answer.z.begin(), timed.answer.z.end());
+  return tools::to_bytes(timed);
+}
+
 PeerRun run_peer(const PeerEntry& entry, const lcp::Problem& given, const lcp::Problem& judged,
                  const PeerSettings& settings, const RunLimits& limits) {
   PeerRun run;
@@ -204,20 +150,19 @@ PeerRun run_peer(const PeerEntry& entry, const lcp::Problem& given, const lcp::P
     }
   }
   const tools::ChildWork work = [&](const std::function<void()>& loaded) {
-    const std::unique_ptr<Peer> peer = entry.make(settings);
-    peer->load(given);
-    loaded();
-    return to_bytes(entry.counts_sweeps
-                        ? solve_with_enough_sweeps(*peer, judged, settings.tolerance, limits)
-                        : solve_repeatedly(*peer, limits));
+    return measure_peer(entry, given, judged, settings, limits, loaded);
   };
-  const tools::ChildAnswer child = tools::run_in_child(work, limits.child);
+  const tools::ChildAnswer child =
+      entry.program.empty()
+          ? tools::run_in_child(work, limits.child)
+          : tools::run_program({entry.program, entry.name},
+                               tools::to_bytes(peer_task(given, settings, limits)), limits.child);
   if (child.end != tools::ChildEnd::kAnswered) {
     run.verdict = verdict_without_answer(child.end);
     run.said = child.reason;
     return run;
   }
-  TimedAnswer timed = from_bytes(child.answer);
+  const auto timed = tools::from_bytes<TimedAnswer>(child.answer);
   run.claim = timed.answer.claim;
   run.said = timed.answer.said;
   run.seconds = timed.seconds;
@@ -226,10 +171,12 @@ PeerRun run_peer(const PeerEntry& entry, const lcp::Problem& given, const lcp::P
   run.iterations = timed.answer.iterations;
   run.pivots = timed.answer.pivots;
   run.factorizations = timed.answer.factorizations;
-  const bool is_finite = is_answer(timed.answer.z, judged);
+  const lcp::Vector z =
+      Eigen::Map<const lcp::Vector>(timed.z.data(), static_cast<lcp::Index>(timed.z.size()));
+  const bool is_finite = is_answer(z, judged);
   if (is_finite) {
-    run.certificate = lcp::certify(judged, timed.answer.z);
-    run.z = timed.answer.z;
+    run.certificate = lcp::certify(judged, z);
+    run.z = z;
   }
   run.verdict = judge_answer(run.certificate, is_finite, run.claim, settings.tolerance);
   return run;

@@ -5,6 +5,8 @@
 #include "bench/peer.h"
 #include "tools/child_process.h"
 
+#include <functional>
+#include <string>
 #include <string_view>
 
 namespace signorini::bench {
@@ -58,9 +60,16 @@ struct PeerRun {
   int factorizations = -1;
 };
 
-/// Runs the solver in a child process and judges its answer here, in long double, on `judged`.
-/// Solvers that count sweeps are given 8, 16, 32 ... until the answer is good enough; the time is
-/// that of the last number alone.
+/// What the child does: loads, solves, times; the bytes that run_peer() makes a PeerRun of.
+/// @param loaded called once the problem is loaded
+[[nodiscard]] std::string measure_peer(const PeerEntry& entry, const lcp::Problem& given,
+                                       const lcp::Problem& judged, const PeerSettings& settings,
+                                       const RunLimits& limits,
+                                       const std::function<void()>& loaded);
+
+/// Runs the solver in a child process, or in its own program, and judges its answer here, in long
+/// double, on `judged`. Solvers that count sweeps are given 8, 16, 32 ... until the answer is good
+/// enough; the time is that of the last number alone.
 /// @param given what the solver gets: `judged`, or regularised(judged)
 [[nodiscard]] PeerRun run_peer(const PeerEntry& entry, const lcp::Problem& given,
                                const lcp::Problem& judged, const PeerSettings& settings,

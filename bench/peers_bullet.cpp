@@ -1,5 +1,6 @@
-// Bullet's MLCP solvers in double precision, called as btMLCPSolver calls them: A x = b + w with
-// b = -q. Their own copies of A are part of their solve.
+// Bullet's MLCP solvers, called as btMLCPSolver calls them: A x = b + w with b = -q. Their own
+// copies of A are part of their solve. In double precision here, in single in
+// bullet_float_peer_main.cpp.
 
 #include "bench/peer.h"
 
@@ -31,7 +32,7 @@ class BulletPeer : public Peer {
     A_.resize(n, n);
     for (int i = 0; i < n; ++i) {
       for (int j = 0; j < n; ++j) {
-        A_.setElem(i, j, M(i, j));
+        A_.setElem(i, j, static_cast<btScalar>(M(i, j)));
       }
     }
     const RowBounds bounds = row_bounds(problem);
@@ -40,9 +41,9 @@ class BulletPeer : public Peer {
     }
     normal_rows_.resize(n);
     for (int i = 0; i < n; ++i) {
-      b_[i] = -problem.q[i];
-      lower_[i] = std::max(bounds.lower[i], -infinity_);
-      upper_[i] = std::min(bounds.upper[i], infinity_);
+      b_[i] = static_cast<btScalar>(-problem.q[i]);
+      lower_[i] = static_cast<btScalar>(std::max(bounds.lower[i], -infinity_));
+      upper_[i] = static_cast<btScalar>(std::min(bounds.upper[i], infinity_));
       normal_rows_[i] = bounds.normal_row[i];
     }
   }
@@ -55,7 +56,7 @@ class BulletPeer : public Peer {
     answer.said = ok ? "true" : "false";
     answer.z.resize(x_.rows());
     for (int i = 0; i < x_.rows(); ++i) {
-      answer.z[i] = x_[i];
+      answer.z[i] = double{x_[i]};
     }
     answer.iterations = claim_of_true_ == Claim::kNothing ? sweeps_ : -1;
   }

@@ -1,10 +1,10 @@
 #include "bench/scene_trade_jobs.h"
 
+#include "bench/sibling_program.h"
 #include "tools/child_process.h"
+#include "tools/file_state.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -17,57 +17,26 @@ namespace {
 constexpr const char* kFloat = "Bullet float";
 
 std::filesystem::path float_program() {
-  return std::filesystem::read_symlink("/proc/self/exe").parent_path() / "signorini-bullet-float";
-}
-
-/// What another program prints. (No RLIMIT_CPU: under it the clock of a process's CPU time goes by
-/// ticks.)
-std::string output_of(const std::string& command) {
-  std::FILE* pipe = ::popen(command.c_str(), "r");
-  if (pipe == nullptr) {
-    throw std::runtime_error("cannot start " + command);
-  }
-  std::string output;
-  std::array<char, 4096> bytes = {};
-  while (const std::size_t got = std::fread(bytes.data(), 1, bytes.size(), pipe)) {
-    output.append(bytes.data(), got);
-  }
-  if (::pclose(pipe) != 0) {
-    throw std::runtime_error(output.empty() ? "a crash" : output);
-  }
-  return output;
-}
-
-std::string run_float(const TradeScene& trade, const SceneSetting& setting, int divisor) {
-  return output_of(fmt::format("exec '{}' '{}' '{}' {}", float_program().string(), trade.scene.name,
-                               setting.name, divisor));
-}
-
-/// The limit counts the CPU time of the child, which for a program of its own is no measure: a run
-/// of that one that took longer is no answer either.
-std::string within_limit(const std::string& bytes, const TradeScene& trade, double seconds) {
-  SceneOutcome outcome = tools::from_bytes<SceneOutcome>(bytes);
-  if (!(outcome.whole_seconds * trade.scene.duration > seconds)) {
-    return bytes;
-  }
-  outcome = {};
-  outcome.said = "time limit";
-  return tools::to_bytes(outcome);
+  return sibling_program("signorini-bullet-float");
 }
 
 /// The run in a child under the limit; what kept it from an answer is said in the outcome.
 std::string run_limited(const TradeScene& trade, const SceneSetting& setting, int divisor,
                         double seconds) {
-  const tools::ChildAnswer answer = tools::run_in_child(
-      [&](const std::function<void()>& loaded) {
-        loaded();
-        return setting.library == kFloat
-                   ? run_float(trade, setting, divisor)
-                   : tools::to_bytes(run_trade_scene(trade, setting, divisor));
-      },
-      {.seconds = seconds});
+  const tools::ChildLimits limits{.seconds = seconds};
+  const tools::ChildAnswer answer =
+      setting.library == kFloat
+          ? tools::run_program(
+                {float_program(), trade.scene.name, setting.name, std::to_string(divisor)}, {},
+                limits)
+          : tools::run_in_child(
+                [&](const std::function<void()>& loaded) {
+                  loaded();
+                  return tools::to_bytes(run_trade_scene(trade, setting, divisor));
+                },
+                limits);
   if (answer.end == tools::ChildEnd::kAnswered) {
-    return setting.library == kFloat ? within_limit(answer.answer, trade, seconds) : answer.answer;
+    return answer.answer;
   }
   if (answer.end == tools::ChildEnd::kCrashed && setting.library == "Signorini") {
     throw std::runtime_error(answer.reason);
@@ -104,13 +73,7 @@ SceneTrade::SceneTrade(const SceneTradeOptions& options)
 }
 
 std::string SceneTrade::settings() const {
-  std::string text = fmt::format("scenes {}", options_.seconds);
-  if (without_float_.empty()) {
-    text +=
-        fmt::format(" {} {}", std::filesystem::file_size(float_program()),
-                    std::filesystem::last_write_time(float_program()).time_since_epoch().count());
-  }
-  return text;
+  return fmt::format("scenes {} {}", options_.seconds, tools::file_state(float_program()));
 }
 
 std::vector<tools::Job> SceneTrade::jobs() const {

@@ -5,6 +5,7 @@
 #include "bench/job_options.h"
 #include "bench/problem_trade_jobs.h"
 #include "bench/tradeoff.h"
+#include "tools/file_state.h"
 
 #ifdef SIGNORINI_HAS_SCENES
 #include "bench/scene_trade_jobs.h"
@@ -31,8 +32,7 @@ std::string state_of(const std::vector<std::string>& folders) {
     if (!std::filesystem::is_directory(folder)) continue;
     for (const auto& file : std::filesystem::recursive_directory_iterator(folder)) {
       if (!file.is_regular_file()) continue;
-      files.push_back(fmt::format("{} {} {}", file.path().string(), file.file_size(),
-                                  file.last_write_time().time_since_epoch().count()));
+      files.push_back(tools::file_state(file.path()));
     }
   }
   std::sort(files.begin(), files.end());
@@ -74,10 +74,17 @@ struct TradeoffCommand::Options {
 
   /// All that decides the results.
   [[nodiscard]] std::string text() const {
-    return fmt::format("tradeoff {} {} {} {} {} {} {} {}", fmt::join(problems.families, ","),
+    std::vector<std::string> programs;  // that have solvers
+    for (const PeerEntry& peer : all_peers()) {
+      if (!peer.program.empty()) {
+        programs.push_back(tools::file_state(peer.program));
+      }
+    }
+    return fmt::format("tradeoff {} {} {} {} {} {} {} {} {}", fmt::join(problems.families, ","),
                        fmt::join(problems.forms, ","), fmt::join(problems.sizes, ","),
                        fmt::join(problems.mass_ratios, ","), fmt::join(dial, ","),
-                       state_of(folders), study.limits.child.seconds, study.most_dense);
+                       state_of(folders), study.limits.child.seconds, study.most_dense,
+                       fmt::join(programs, ","));
   }
 };
 

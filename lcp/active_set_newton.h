@@ -28,7 +28,7 @@ class ActiveSetNewton {
   struct Limits {
     int factorizations = 6;    ///< >= 1
     double wrong_share = 0.1;  ///< gives up where more of the rows have a wrong sign at first
-    int rounds = 15;           ///< of looking for an inside of what redundant rows leave open
+    int rounds = 4;            ///< of looking for an inside of what redundant rows leave open
   };
 
   /// Gives up early where the number of wrong rows does not fall.

@@ -14,6 +14,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+// A sum of |M||z| above this has lost nothing to underflow that would count: up to 2^50 products
+// lose 2^-1075 each. (Where all products of a row vanish its sum is 0 and the floor too: stricter.)
+constexpr double kLeastSum = 0x1p-960;
 constexpr double kFloorsAllowed = 4.0;
 // No rounding floor excuses a residual above this: where z is so large that |M||z| has no digits
 // left beside q, the floor is large too, and an infeasible problem would pass for a rounded one.
@@ -42,16 +45,17 @@ Certificate refuse() {
 }
 
 /// Fills z's row norms |M||z| (added to size), the diagonal and the blocks of the cones.
+template <typename Number>
 struct EntryVisitor {
-  const std::vector<long double>& z;
+  const std::vector<Number>& absolute_z;
   const std::vector<int>& cone_of_row;
   const std::vector<FrictionCone>& cones;
-  std::vector<long double>& size;
+  std::vector<Number>& size;
   Vector& diagonal;
   std::vector<Eigen::Matrix3d>& blocks;
 
   void operator()(Index i, Index j, double a) const {
-    size[i] += std::abs(a) * std::abs(z[j]);
+    size[i] += std::abs(a) * absolute_z[j];
     if (i == j) {
       diagonal[i] = a;
     }
@@ -64,6 +68,55 @@ struct EntryVisitor {
 
 }  // namespace
 
+/// z's row norms |M||z|, scale_ and cone_blocks_: every entry of M is looked at.
+template <typename Number>
+void Certifier::visit_entries(const Problem& problem, std::vector<Number>& absolute_z,
+                              std::vector<Number>& size) {
+  const Index n = problem.size();
+  size.assign(n, Number{0});
+  absolute_z.resize(n);
+  for (Index i = 0; i < n; ++i) {
+    absolute_z[i] = static_cast<Number>(std::abs(z_[i]));
+  }
+  const EntryVisitor<Number> visit{absolute_z, cone_of_row_, problem.cones,
+                                   size,       scale_,       cone_blocks_};
+  if (const auto* factored = std::get_if<FactoredMatrix>(&problem.M)) {
+    factored->visit_lower(visit_, [&visit](Index i, Index j, double a) {
+      visit(i, j, a);
+      if (i != j) {
+        visit(j, i, a);
+      }
+    });
+  } else if (const auto* dense = std::get_if<Matrix>(&problem.M)) {
+    for (Index j = 0; j < n; ++j) {
+      for (Index i = 0; i < n; ++i) {
+        visit(i, j, (*dense)(i, j));
+      }
+    }
+  } else {
+    const auto& sparse = std::get<SparseMatrix>(problem.M);
+    for (Index j = 0; j < n; ++j) {
+      for (SparseMatrix::InnerIterator it(sparse, j); it; ++it) {
+        visit(it.row(), j, it.value());
+      }
+    }
+  }
+}
+
+/// size_ without q: in doubles, whose rounding is nothing in a floor, and in long doubles where one
+/// of the sums leaves their range.
+void Certifier::find_sizes(const Problem& problem) {
+  visit_entries(problem, absolute_z_, absolute_w_);
+  const bool in_range = std::all_of(absolute_w_.begin(), absolute_w_.end(), [](double sum) {
+    return sum == 0.0 || (sum > kLeastSum && std::isfinite(sum));
+  });
+  if (in_range) {
+    size_.assign(absolute_w_.begin(), absolute_w_.end());
+  } else {
+    visit_entries(problem, long_z_, size_);
+  }
+}
+
 /// w_, size_, scale_ from M and q.
 void Certifier::multiply_by_matrix(const Problem& problem) {
   const Index n = problem.size();
@@ -74,39 +127,18 @@ void Certifier::multiply_by_matrix(const Problem& problem) {
       cone_of_row_[problem.cones[c].normal_row + k] = static_cast<int>(c);
     }
   }
-  size_.assign(n, 0.0L);
   scale_.setZero(n);
   w_.assign(n, 0.0L);
-  const EntryVisitor visit{z_, cone_of_row_, problem.cones, size_, scale_, cone_blocks_};
   if (const auto* factored = std::get_if<FactoredMatrix>(&problem.M)) {
     body_p_.resize(factored->degrees_of_freedom());
     body_v_.resize(factored->degrees_of_freedom());
     factored->transpose_times(z_.data(), body_p_.data());
     factored->apply_inverse_mass(body_p_.data(), body_v_.data());
     factored->times(body_v_.data(), z_.data(), w_.data());
-    factored->visit_lower(visit_, [&visit](Index i, Index j, double a) {
-      visit(i, j, a);
-      if (i != j) {
-        visit(j, i, a);
-      }
-    });
   } else {
     multiply(problem.M, z_.data(), w_.data());
-    if (const auto* dense = std::get_if<Matrix>(&problem.M)) {
-      for (Index j = 0; j < n; ++j) {
-        for (Index i = 0; i < n; ++i) {
-          visit(i, j, (*dense)(i, j));
-        }
-      }
-    } else {
-      const auto& sparse = std::get<SparseMatrix>(problem.M);
-      for (Index j = 0; j < n; ++j) {
-        for (SparseMatrix::InnerIterator it(sparse, j); it; ++it) {
-          visit(it.row(), j, it.value());
-        }
-      }
-    }
   }
+  find_sizes(problem);
   for (Index i = 0; i < n; ++i) {
     w_[i] += problem.q[i];
     size_[i] += std::abs(problem.q[i]);

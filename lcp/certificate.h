@@ -144,6 +144,10 @@ class Certifier {
   [[nodiscard]] bool measure(const Problem& problem, const VectorRef& z,
                              const std::vector<int>* island);
   void multiply_by_matrix(const Problem& problem);
+  void find_sizes(const Problem& problem);
+  template <typename Number>
+  void visit_entries(const Problem& problem, std::vector<Number>& absolute_z,
+                     std::vector<Number>& size);
   /// @param scales_known scale_ is of this problem
   [[nodiscard]] bool bound(const Problem& problem, const VectorRef& z, double tolerance,
                            bool scales_known);
@@ -162,6 +166,8 @@ class Certifier {
   std::vector<long double> z_, w_;               // w = M z + q
   std::vector<long double> body_p_, body_v_;     // of a factored M
   std::vector<double> absolute_p_, absolute_v_;  // |J^T||z| and |W| times it
+  std::vector<double> absolute_z_, absolute_w_;  // |z|, |M||z|
+  std::vector<long double> long_z_;              // |z|, where doubles have not the range
   std::vector<long double> size_;                // (|M||z|)_i + |q_i|
   Vector scale_;                                 // D of every row; of a cone at its normal row
   Vector block_room_;                            // of diagonal_block()

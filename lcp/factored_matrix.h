@@ -86,12 +86,25 @@ class FactoredMatrix {
 
  private:
   void start_visit(VisitWorkspace& workspace) const;
+  [[nodiscard]] static double dot(int size, const double* x, const double* y);
 
   std::vector<int> row_start_{0};
   std::vector<Entry> entries_;
   std::vector<double> values_;
   std::vector<double> compliance_;
 };
+
+/// In the order of the entries; most blocks are bodies in space or in the plane.
+inline double FactoredMatrix::dot(int size, const double* x, const double* y) {
+  const auto sum = [x, y](int count) {
+    double a = 0.0;
+    for (int k = 0; k < count; ++k) {
+      a += x[k] * y[k];
+    }
+    return a;
+  };
+  return size == 6 ? sum(6) : size == 3 ? sum(3) : sum(size);
+}
 
 template <typename Visit>
 void FactoredMatrix::visit_lower(VisitWorkspace& workspace, Visit visit) const {
@@ -106,10 +119,7 @@ void FactoredMatrix::visit_lower(VisitWorkspace& workspace, Visit visit) const {
       mass.apply_inverse(entry.block, values(entry), moved.data());
       for (int use = use_start[entry.block]; uses[use].first <= i; ++use) {
         const auto [j, start] = uses[use];
-        double a = 0.0;
-        for (int k = 0; k < size; ++k) {
-          a += moved[k] * values_[start + k];
-        }
+        const double a = dot(size, moved.data(), values_.data() + start);
         if (seen[j] != i) {
           seen[j] = i;
           product[j] = 0.0;

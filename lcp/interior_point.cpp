@@ -370,8 +370,7 @@ bool InteriorPoint::Workspace::start_warm(const Vector& warm_start) {
 /// Tries the set of all rows from x = 0, where all contacts press at rest. @return whether the
 /// problem is solved
 bool InteriorPoint::Workspace::start_on_all_rows() {
-  constexpr ActiveSetNewton::Limits kLimits = {
-      .factorizations = 3, .wrong_share = 0.06, .rounds = 4};
+  constexpr ActiveSetNewton::Limits kLimits = {.factorizations = 3, .wrong_share = 0.06};
   trial_ = x_;
   guess_.assign(problem_.size(), RowState::kBetween);
   const bool solved = active_set_.improve(problem_, trial_, guess_, kLimits, settings_.tolerance) <=

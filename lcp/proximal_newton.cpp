@@ -72,11 +72,13 @@ double ProximalNewton::line_search(const ScaledProblem& problem, const WhitenedR
 bool ProximalNewton::step(ScaledProblem& problem, BodySpaceSystem& system, double proximal,
                           int most_factorizations) {
   constexpr int kMostNewtonSteps = 30;
+  constexpr double kVanished = 1e-10;  // of the first gradient: rounding, and rows on their bounds
   const WhitenedRows& rows = system.rows();
   point_ = x_;
   problem.gradient(x_, base_slack_);
   velocity_.setZero(rows.degrees_of_freedom());
   e_.resize(rows.rows());
+  double first = 0.0;
   double last = kInfinity;
   for (int newton = 0;; ++newton) {
     dual_gradient(problem, rows, velocity_, gradient_);
@@ -85,8 +87,10 @@ bool ProximalNewton::step(ScaledProblem& problem, BodySpaceSystem& system, doubl
     if (!std::isfinite(size)) {
       return false;
     }
-    if (size <= 1e-14 * (speed + change_.cwiseAbs().maxCoeff()) || newton == kMostNewtonSteps ||
-        (newton > 3 && size >= last) || system.factorizations() >= most_factorizations) {
+    first = newton == 0 ? size : first;
+    if (size <= 1e-14 * (speed + change_.cwiseAbs().maxCoeff()) || size <= kVanished * first ||
+        newton == kMostNewtonSteps || (newton > 3 && size >= last) ||
+        system.factorizations() >= most_factorizations) {
       break;
     }
     last = size;
@@ -94,8 +98,12 @@ bool ProximalNewton::step(ScaledProblem& problem, BodySpaceSystem& system, doubl
       const double x = point_[i] + change_[i];
       e_[i] = x > problem.lower()[i] && x < problem.upper()[i] ? 0.0 : kInfinity;
     }
-    if (!system.factor(e_, proximal)) {
-      return false;
+    if (!has_factor_ || e_ != factored_) {
+      has_factor_ = system.factor(e_, proximal);
+      if (!has_factor_) {
+        return false;
+      }
+      factored_ = e_;
     }
     direction_ = -gradient_;
     system.solve_in_body_space(direction_);
@@ -114,6 +122,7 @@ void ProximalNewton::improve(ScaledProblem& problem, BodySpaceSystem& system, do
                              const Deadline& deadline) {
   weight_ = system.rows().compliance().array() + proximal;
   x_ = problem.best();
+  has_factor_ = false;
   double before = problem.best_residual();
   for (int k = 0; k < most_steps && !deadline.passed(); ++k) {
     if (!step(problem, system, proximal, most_factorizations)) {
@@ -121,7 +130,7 @@ void ProximalNewton::improve(ScaledProblem& problem, BodySpaceSystem& system, do
     }
     problem.gradient(x_, slack_);
     const double after = problem.consider(x_, slack_);
-    if (after > 0.5 * before || problem.best_residual() <= 0.01 * tolerance) {
+    if (after > 0.5 * before || problem.best_residual() <= 0.1 * tolerance) {
       return;
     }
     before = after;

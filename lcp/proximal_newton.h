@@ -25,8 +25,8 @@ namespace signorini::lcp {
 /// factorisations, whatever is redundant.
 class ProximalNewton {
  public:
-  /// Outer steps from the problem's best x until the residual no longer halves or is far below the
-  /// tolerance.
+  /// Outer steps from the problem's best x until the residual no longer halves or is a tenth of
+  /// the tolerance. A set of rows that has just been factored is not factored again.
   /// @param proximal delta > 0, of a unit diagonal @param most_steps outer steps
   /// @param most_factorizations of all steps together
   void improve(ScaledProblem& problem, BodySpaceSystem& system, double proximal, int most_steps,
@@ -39,6 +39,8 @@ class ProximalNewton {
                      Vector& gradient);
   double line_search(const ScaledProblem& problem, const WhitenedRows& rows);
 
+  bool has_factor_ = false;  // of factored_, with the weights at hand
+  Vector factored_;          // e_ of the last factorisation
   Vector x_, point_, base_slack_, weight_, velocity_, slack_, change_, gradient_, direction_,
       g_direction_, e_;
   std::vector<std::pair<double, double>> breaks_;

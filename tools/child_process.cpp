@@ -11,11 +11,14 @@
 #include <fstream>
 #include <optional>
 #include <poll.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <system_error>
 #include <unistd.h>
+#include <utility>
+#include <vector>
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define SIGNORINI_SANITIZED 1
@@ -28,10 +31,12 @@ using Clock = std::chrono::steady_clock;
 
 volatile std::sig_atomic_t stopped = 0;
 
-// What travels through the pipe: one letter; after an answer or a reason its length and its bytes.
+// What travels through the pipe: messages of one letter, a length and as many bytes; or, after
+// kOutput, whatever a program prints, up to its end.
 constexpr char kLoaded = 'l';
 constexpr char kAnswer = 'a';
 constexpr char kReason = 'r';
+constexpr char kOutput = 'o';
 
 std::system_error last_error(const char* what) {
   return std::system_error(errno, std::generic_category(), what);
@@ -56,26 +61,30 @@ class Descriptor {
   int number_;
 };
 
-void write_all(int pipe, const char* bytes, std::size_t count) {
+/// @return whether all of it could be written
+bool write_all(int file, const char* bytes, std::size_t count) {
   while (count > 0) {
-    const ssize_t written = ::write(pipe, bytes, count);
+    const ssize_t written = ::write(file, bytes, count);
     if (written < 0 && errno == EINTR) {
       continue;
     }
     if (written <= 0) {
-      ::_exit(1);
+      return false;
     }
     bytes += written;
     count -= static_cast<std::size_t>(written);
   }
+  return true;
 }
 
+/// From a child, which ends if nobody listens.
 void write_message(int pipe, char kind, std::string_view bytes) {
   const std::uint64_t count = bytes.size();
   char head[1 + sizeof count] = {kind};
   std::memcpy(head + 1, &count, sizeof count);
-  write_all(pipe, head, sizeof head);
-  write_all(pipe, bytes.data(), bytes.size());
+  if (!write_all(pipe, head, sizeof head) || !write_all(pipe, bytes.data(), bytes.size())) {
+    ::_exit(1);
+  }
 }
 
 #ifndef SIGNORINI_SANITIZED
@@ -110,8 +119,8 @@ void silence(int descriptor) {
   }
 }
 
-[[noreturn]] void run_child(const ChildWork& work, const ChildLimits& limits, int pipe,
-                            pid_t parent) {
+/// What every child is born with: no terminal, no handlers of the parent's, the limits.
+void settle_child(const ChildLimits& limits, pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) {
     ::_exit(1);  // the parent died first
@@ -123,6 +132,9 @@ void silence(int descriptor) {
     silence(descriptor);
   }
   limit_resources(limits);
+}
+
+[[noreturn]] void run_work(const ChildWork& work, int pipe) {
   try {
     write_message(pipe, kAnswer, work([pipe] { write_message(pipe, kLoaded, {}); }));
   } catch (const std::bad_alloc&) {
@@ -133,6 +145,21 @@ void silence(int descriptor) {
     write_message(pipe, kReason, "an exception of unknown type");
   }
   ::_exit(0);  // no destructors, no buffers of the parent's streams
+}
+
+[[noreturn]] void become_program(const std::vector<std::string>& command, int input, int pipe) {
+  std::vector<std::string> words = command;
+  std::vector<char*> arguments;
+  for (std::string& word : words) {
+    arguments.push_back(word.data());
+  }
+  arguments.push_back(nullptr);
+  write_message(pipe, kOutput, {});
+  ::dup2(input, STDIN_FILENO);
+  ::dup2(pipe, STDOUT_FILENO);
+  ::execv(arguments[0], arguments.data());
+  ::dprintf(pipe, "cannot start %s: %s", arguments[0], ::strerror(errno));
+  ::_exit(1);
 }
 
 struct Message {
@@ -204,11 +231,13 @@ ChildAnswer listen(int pipe, pid_t child, const ChildLimits& limits) {
   ChildAnswer result;
   result.reason.clear();
   std::string arrived;
+  bool is_output = false;
   Allowance allowance(child, limits.loading_seconds);
   while (true) {
-    while (std::optional<Message> message = take_message(arrived)) {
-      if (message->kind == kLoaded) {
+    while (std::optional<Message> message = is_output ? std::nullopt : take_message(arrived)) {
+      if (message->kind == kLoaded || message->kind == kOutput) {
         result.is_loaded = true;
+        is_output = message->kind == kOutput;
         allowance = Allowance(child, limits.seconds);
         continue;
       }
@@ -235,7 +264,8 @@ ChildAnswer listen(int pipe, pid_t child, const ChildLimits& limits) {
     if (count > 0) {
       arrived.append(bytes, static_cast<std::size_t>(count));
     } else if (count == 0) {
-      result.end = ChildEnd::kCrashed;
+      result.end = is_output ? ChildEnd::kAnswered : ChildEnd::kCrashed;
+      result.answer = is_output ? std::move(arrived) : std::string();
       return result;
     }
   }
@@ -248,9 +278,10 @@ int wait_for(pid_t child) {
   return status;
 }
 
-}  // namespace
-
-ChildAnswer run_in_child(const ChildWork& work, const ChildLimits& limits) {
+/// @param live what the child does, with its end of the pipe; does not return
+/// @param is_program it becomes another program, whose exit other than 0 is a crash
+ChildAnswer run(const std::function<void(int pipe)>& live, bool is_program,
+                const ChildLimits& limits) {
   if (stopped != 0) {
     return {.end = ChildEnd::kInterrupted, .answer = {}, .reason = {}, .is_loaded = false};
   }
@@ -266,16 +297,40 @@ ChildAnswer run_in_child(const ChildWork& work, const ChildLimits& limits) {
     throw last_error("fork");
   }
   if (child == 0) {
-    run_child(work, limits, write_end.number(), parent);
+    settle_child(limits, parent);
+    live(write_end.number());
   }
   write_end.close();
   ChildAnswer result = listen(read_end.number(), child, limits);
   ::kill(child, SIGKILL);  // it has answered, or it never will; no effect on one that has died
   const int status = wait_for(child);
+  if (result.end == ChildEnd::kAnswered && is_program && status != 0) {
+    result.end = ChildEnd::kCrashed;
+    result.reason = std::exchange(result.answer, {});
+  }
   if (result.end == ChildEnd::kCrashed && result.reason.empty()) {
     result.reason = describe_status(status);
   }
   return result;
+}
+
+}  // namespace
+
+ChildAnswer run_in_child(const ChildWork& work, const ChildLimits& limits) {
+  return run([&](int pipe) { run_work(work, pipe); }, false, limits);
+}
+
+ChildAnswer run_program(const std::vector<std::string>& command, std::string_view input,
+                        const ChildLimits& limits) {
+  const Descriptor file(::memfd_create("input", MFD_CLOEXEC));
+  if (file.number() < 0) {
+    throw last_error("memfd_create");
+  }
+  if (!write_all(file.number(), input.data(), input.size()) ||
+      ::lseek(file.number(), 0, SEEK_SET) != 0) {
+    throw last_error("the input of another program");
+  }
+  return run([&](int pipe) { become_program(command, file.number(), pipe); }, true, limits);
 }
 
 void stop_children() {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace signorini::tools {
 
@@ -46,6 +47,14 @@ using ChildWork = std::function<std::string(const std::function<void()>& loaded)
 ///
 /// @throws std::system_error if there is no pipe or no process to be had.
 [[nodiscard]] ChildAnswer run_in_child(const ChildWork& work, const ChildLimits& limits);
+
+/// Another program as the child, under the same limits: `input` is its standard input, what it
+/// prints is the answer, an exit other than 0 a crash whose reason is what it printed. All of its
+/// time counts against `seconds`; it dies with its parent.
+/// @param command the program's file, then its arguments
+/// @throws std::system_error as run_in_child()
+[[nodiscard]] ChildAnswer run_program(const std::vector<std::string>& command,
+                                      std::string_view input, const ChildLimits& limits);
 
 /// Ends the running child, and every later one at once, with kInterrupted. Safe in a signal
 /// handler.

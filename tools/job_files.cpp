@@ -1,6 +1,7 @@
 #include "tools/job_files.h"
 
 #include "tools/byte_archive.h"
+#include "tools/file_state.h"
 #include "tools/whole_file.h"
 
 #include <cctype>
@@ -67,7 +68,8 @@ JobFiles::JobFiles(std::filesystem::path folder, const std::string& settings)
         fmt::format("cannot make the folder {}: {}", folder_.string(), error.message()));
   }
   const std::optional<std::string> program = read_file("/proc/self/exe");
-  key_ = fmt::format("{:016x}\n{}", program ? print_of(*program) : 0, settings);
+  key_ =
+      fmt::format("{:016x}\n{}\n{}", program ? print_of(*program) : 0, library_states(), settings);
 }
 
 std::optional<JobResult> JobFiles::find(const Job& job) const {

@@ -9,8 +9,8 @@
 namespace signorini::tools {
 
 /// Finished jobs of a list, one file each in a folder. A file says what it is the result of: the
-/// job's name, the settings, and a print of the program's own file; what does not match, or is
-/// damaged, is no result.
+/// job's name, the settings, a print of the program's own file, and the size and time of its shared
+/// libraries; what does not match, or is damaged, is no result.
 class JobFiles {
  public:
   /// @param folder made if absent; empty: nothing is kept @throws std::runtime_error naming it
@@ -23,7 +23,7 @@ class JobFiles {
 
  private:
   std::filesystem::path folder_;
-  std::string key_;  ///< program and settings
+  std::string key_;  ///< program, libraries and settings
 };
 
 /// Where a job is kept.

@@ -20,8 +20,9 @@ struct JobListOptions {
   /// Where each finished job is kept as one file, written whole or not at all; made if absent.
   /// Empty: nothing is kept.
   std::filesystem::path folder = {};
-  /// All that decides the results beside the jobs' names and the program: what was finished under
-  /// other settings, or by another build, is done again.
+  /// All that decides the results beside the jobs' names, the program and its shared libraries:
+  /// what was finished under other settings, or by another build, is done again. Files that the
+  /// jobs read belong in it (file_state.h).
   std::string settings = {};
   bool shows_progress = false;  ///< one line on stderr, rewritten, with the time left
 };

@@ -21,11 +21,13 @@ enum class Stepper : unsigned char {
 
 /// What is simulated, whoever simulates it. Plain data; SI units, world axes.
 struct Scene {
-  std::string name;             ///< short, usable in a file name
-  std::string title;            ///< for people
-  std::string description;      ///< a paragraph
-  std::string source;           ///< the file, or what stands for it
-  std::string text;             ///< of that file, as it was read
+  std::string name;         ///< short, usable in a file name
+  std::string title;        ///< for people
+  std::string description;  ///< a paragraph
+  std::string source;       ///< the file, or what stands for it
+  std::string text;         ///< of that file, as it was read
+  /// Every other file that it was made of (included models, meshes), sorted, each once.
+  std::vector<std::string> files = {};
   bool is_bullet_file = false;  ///< text is a .bullet file, whose own world Bullet runs
   Bodies bodies;
   State state;  ///< at t = 0

@@ -162,6 +162,7 @@ class SceneBuilder {
                       scene_.never_collide.size()));
     }
     for (const std::string& line : shapes_.notices()) scene_.notices.push_back(line);
+    scene_.files.insert(scene_.files.end(), shapes_.files().begin(), shapes_.files().end());
     for (const std::string& body : default_inertia_) {
       scene_.notices.push_back("body '" + body +
                                "' has no <inertial>: 1 kg and 1 kg m^2 about every axis, "
@@ -518,8 +519,8 @@ Scene read(const std::string& text, const std::string& file, const std::string& 
   tinyxml2::XMLDocument xml;
   const SceneFormat format = parse_xml(text, source, xml);
   check_numbers(xml, format, source);
-  if (format == SceneFormat::kSdf) check_includes(xml, file, source);
   Scene scene;
+  if (format == SceneFormat::kSdf) scene.files = check_includes(xml, file, source);
   scene.source = source;
   scene.text = text;
   scene.name = std::filesystem::path(source).stem().string();
@@ -549,6 +550,8 @@ Scene read(const std::string& text, const std::string& file, const std::string& 
     add_document(checked_text, file, format, source, console, survey, builder);
   }
   builder.finish();
+  std::sort(scene.files.begin(), scene.files.end());
+  scene.files.erase(std::unique(scene.files.begin(), scene.files.end()), scene.files.end());
   for (const auto* lines : {&extras.notices}) {
     scene.notices.insert(scene.notices.end(), lines->begin(), lines->end());
   }

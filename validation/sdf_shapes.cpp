@@ -233,6 +233,7 @@ collision::Shape ShapeReader::read_mesh(const sdf::ElementPtr& mesh, const Shape
   const sdf::ElementPtr uri = mesh->FindElement("uri");
   if (uri == nullptr) throw InputError(use.where + ": <mesh>: <uri> is missing");
   const std::string file = find(uri->Get<std::string>(), use);
+  files_.insert(file);
   const Vec3 scale =
       mesh->FindElement("scale") == nullptr ? Vec3::Ones().eval() : numbers<3>(mesh, "scale", use);
   std::string part;

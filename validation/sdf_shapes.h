@@ -4,6 +4,7 @@
 
 #include <map>
 #include <sdf/Element.hh>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,8 @@ class ShapeReader {
                                       Pose& local);
 
   [[nodiscard]] std::vector<std::string> notices() const;
+  /// The mesh files that were read.
+  [[nodiscard]] const std::set<std::string>& files() const { return files_; }
 
  private:
   struct MeshUse {
@@ -53,6 +56,7 @@ class ShapeReader {
 
   std::string folder_;
   std::map<std::string, MeshUse> meshes_;  ///< by file, part, scale and kind
+  std::set<std::string> files_;
   int planes_ = 0;
 };
 

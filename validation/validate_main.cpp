@@ -14,6 +14,7 @@
 #include <signorini/lcp/io/dump_recorder.h>
 #endif
 
+#include "tools/file_state.h"
 #include "tools/job_list.h"
 
 #include <CLI/CLI.hpp>
@@ -285,6 +286,9 @@ std::string settings_text(const Arguments& arguments, const std::vector<Job>& jo
       run.skip_unsupported, run.ground ? fmt::format("{}", *run.ground) : "none", run.trade);
   for (const Job& job : jobs) {
     text += "\n" + job.name + "\n" + job.scene.text;
+    for (const std::string& file : job.scene.files) {
+      text += "\n" + signorini::tools::file_state(file);
+    }
   }
   return text;
 }

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <system_error>
 #include <tinyxml2.h>
+#include <utility>
 #include <vector>
 
 namespace signorini::validation {
@@ -39,6 +40,8 @@ class IncludeWalk {
     if (!file.empty()) open_.push_back(fs::weakly_canonical(file, error));
   }
 
+  [[nodiscard]] std::vector<std::string> take_files() { return std::move(files_); }
+
   void walk(const XMLElement& element, const std::string& source) {
     if (is_without_physics(element.Name())) return;
     if (std::string_view(element.Name()) == "include") follow(element, source);
@@ -65,6 +68,7 @@ class IncludeWalk {
     if (!fs::is_regular_file(file, error)) {
       fail(include, source, fmt::format("{} is not a file", file.string()));
     }
+    files_.push_back(file.string());
     tinyxml2::XMLDocument document;
     if (document.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS) return;
     const XMLElement* root = document.RootElement();
@@ -79,15 +83,18 @@ class IncludeWalk {
     throw InputError(fmt::format("{}: <include>: {}", locate(include, source), what));
   }
 
+  std::vector<std::string> files_;
   std::vector<fs::path> open_;  ///< being read, the outermost first
   int count_ = 0;
 };
 
 }  // namespace
 
-void check_includes(const tinyxml2::XMLDocument& document, const std::string& file,
-                    const std::string& source) {
-  IncludeWalk(file).walk(*document.RootElement(), source);
+std::vector<std::string> check_includes(const tinyxml2::XMLDocument& document,
+                                        const std::string& file, const std::string& source) {
+  IncludeWalk walk(file);
+  walk.walk(*document.RootElement(), source);
+  return walk.take_files();
 }
 
 }  // namespace signorini::validation

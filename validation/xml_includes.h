@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace tinyxml2 {
 class XMLDocument;
@@ -19,9 +20,11 @@ inline constexpr int kDeepestInclude = 50;
 /// found or parsed are left to libsdformat's own message.
 /// @param file the document's own; empty for text without one
 /// @param source how messages name it
+/// @return the files that were followed, each as often as it is included
 /// @throws InputError naming file and line of an <include> of a file that is being read already, of
 /// something that is no regular file or folder, deeper than kDeepestInclude, or one too many
-void check_includes(const tinyxml2::XMLDocument& document, const std::string& file,
-                    const std::string& source);
+[[nodiscard]] std::vector<std::string> check_includes(const tinyxml2::XMLDocument& document,
+                                                      const std::string& file,
+                                                      const std::string& source);
 
 }  // namespace signorini::validation

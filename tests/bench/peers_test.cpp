@@ -5,6 +5,7 @@
 #include "bench/classic_problems.h"
 #include "bench/contact_families.h"
 #include "bench/friction_forms.h"
+#include "bench/peer_task.h"
 #include "bench/peers_study.h"
 #include "bench/peers_table.h"
 
@@ -511,6 +512,9 @@ TEST_P(EveryLibrary, SolvesAPositiveDefiniteProblem) {
   }
   ASSERT_FALSE(entries.empty());
   PeersOptions options;
+  if (library == "Bullet float") {
+    options.settings.tolerance = 1e-4;
+  }
   options.limits.child.seconds = 20.0;
   options.limits.repeats = 1;
   options.limits.repeat_seconds = 0.0;
@@ -550,8 +554,64 @@ TEST(Peers, SiconosSolvesCones) {
   }
 }
 
+TEST(PeerTask, IsTheProblemWithItsMatrixFormed) {
+  const auto problems =
+      peer_problems({.families = {"tower4"}, .forms = {"box"}, .sizes = {16}, .folders = {}});
+  const lcp::Problem problem = problems.front().make();
+  PeerSettings settings;
+  settings.tolerance = 1e-3;
+  RunLimits few;
+  few.most_sweeps = 7;
+  const PeerTask task = peer_task(problem, settings, few);
+  const auto read = tools::from_bytes<PeerTask>(tools::to_bytes(task));
+  EXPECT_EQ(read.settings.tolerance, 1e-3);
+  EXPECT_EQ(read.limits.most_sweeps, 7);
+  const lcp::Problem again = problem_of(read);
+  EXPECT_EQ(lcp::to_dense(again.M), lcp::to_dense(problem.M));
+  EXPECT_EQ(again.q, problem.q);
+  EXPECT_EQ(again.lower, problem.lower);
+  EXPECT_EQ(again.upper, problem.upper);
+  ASSERT_EQ(again.limits.size(), problem.limits.size());
+  PeerTask cut = task;
+  cut.M.pop_back();
+  EXPECT_THROW((void)problem_of(cut), std::invalid_argument);
+  const auto cones =
+      peer_problems({.families = {"tower4"}, .forms = {"cone"}, .sizes = {16}, .folders = {}});
+  EXPECT_THROW((void)peer_task(cones.front().make(), settings, {}), std::invalid_argument);
+}
+
+/// The same method in single precision: the answer of the double's to its own accuracy, no better.
+TEST(Peers, BulletInSinglePrecisionIsAsAccurateAsThat) {
+  const std::vector<PeerEntry> all = all_peers();
+  const auto called = [&](const char* name) {
+    return std::find_if(all.begin(), all.end(),
+                        [&](const PeerEntry& entry) { return entry.name == name; });
+  };
+  if (called("bullet-float-dantzig") == all.end()) {
+    GTEST_SKIP() << "this build is without Bullet in both precisions (libbullet-dev)";
+  }
+  const auto problems = peer_problems({.families = {"psd"}, .sizes = {12}, .folders = {}});
+  const lcp::Problem problem = problems.front().make();
+  RunLimits limits;
+  limits.repeats = 1;
+  PeerSettings settings;
+  settings.tolerance = 1e-4;
+  const PeerRun in_double = run_peer(*called("bullet-dantzig"), problem, problem, settings, limits);
+  const PeerRun in_float =
+      run_peer(*called("bullet-float-dantzig"), problem, problem, settings, limits);
+  ASSERT_EQ(in_double.verdict, Verdict::kSolved) << in_double.said;
+  ASSERT_EQ(in_float.verdict, Verdict::kSolved) << in_float.said;
+  EXPECT_GT(in_float.seconds, 0.0);
+  EXPECT_LT(in_double.certificate.natural_residual, 1e-12);
+  EXPECT_GT(in_float.certificate.natural_residual, 1e-10);
+  const PeerRun sweeps = run_peer(*called("bullet-float-pgs"), problem, problem, settings, limits);
+  EXPECT_EQ(sweeps.verdict, Verdict::kSolved) << sweeps.said;
+  EXPECT_GE(sweeps.iterations, 8);
+}
+
 INSTANTIATE_TEST_SUITE_P(Peers, EveryLibrary,
-                         testing::Values("Signorini", "Bullet", "ODE", "DART", "Siconos"));
+                         testing::Values("Signorini", "Bullet", "Bullet float", "ODE", "DART",
+                                         "Siconos"));
 
 }  // namespace
 }  // namespace signorini::bench

@@ -23,7 +23,7 @@ TEST(SceneTrade, KindsAndSizes) {
     EXPECT_EQ(trade.scene.kind, "stands");
     classes.insert(class_size(static_cast<int>(trade.scene.bodies.size()) - 1));
   }
-  EXPECT_EQ(classes, (std::set<int>{16, 64, 256}));
+  EXPECT_EQ(classes, (std::set<int>{16, 64, 256, 1024}));
 }
 
 TEST(SceneTrade, TheFinerStepErrsLessAndCostsMore) {

@@ -115,6 +115,39 @@ TEST(ChildProcess, MemoryAboveTheLimitIsRefused) {
 }
 #endif
 
+TEST(ChildProcess, AnotherProgramGetsItsInputAndAnswersByItsOutput) {
+  std::string bytes(300000, 'x');
+  bytes[7] = '\0';
+  const ChildAnswer child = run_program({"/bin/cat"}, bytes, {});
+  ASSERT_EQ(child.end, ChildEnd::kAnswered) << child.reason;
+  EXPECT_EQ(child.answer, bytes);
+  const ChildAnswer silent = run_program({"/bin/true"}, {}, {});
+  EXPECT_EQ(silent.end, ChildEnd::kAnswered);
+  EXPECT_EQ(silent.answer, "");
+}
+
+TEST(ChildProcess, AnotherProgramsFailureIsACrash) {
+  const ChildAnswer says = run_program({"/bin/sh", "-c", "echo no such scene; exit 1"}, {}, {});
+  EXPECT_EQ(says.end, ChildEnd::kCrashed);
+  EXPECT_EQ(says.reason, "no such scene\n");
+  EXPECT_EQ(says.answer, "");
+  EXPECT_EQ(run_program({"/bin/false"}, {}, {}).reason, "exit 1 without an answer");
+  const ChildAnswer killed = run_program({"/bin/sh", "-c", "kill -SEGV $$"}, {}, {});
+  EXPECT_EQ(killed.end, ChildEnd::kCrashed);
+  EXPECT_NE(killed.reason.find("signal 11"), std::string::npos) << killed.reason;
+  const ChildAnswer absent = run_program({"/no/such/program"}, {}, {});
+  EXPECT_EQ(absent.end, ChildEnd::kCrashed);
+  EXPECT_NE(absent.reason.find("cannot start /no/such/program"), std::string::npos)
+      << absent.reason;
+}
+
+TEST(ChildProcess, AnotherProgramKeepsItsTimeLimit) {
+  const ChildAnswer child =
+      run_program({"/bin/sh", "-c", "while true; do true; done"}, {}, {.seconds = 0.2});
+  EXPECT_EQ(child.end, ChildEnd::kTimedOut);
+  EXPECT_EQ(child.reason, "time limit");
+}
+
 /// The last test: what is stopped stays stopped.
 TEST(ChildProcessStopped, EndsTheRunningChildAndEveryLaterOne) {
   std::signal(SIGALRM, [](int) { stop_children(); });

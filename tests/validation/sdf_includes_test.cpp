@@ -43,6 +43,20 @@ TEST_F(SdfIncludes, AModelIncludedTwiceIsTwoModels) {
   EXPECT_EQ(read_scene_file(path("world.sdf")).bodies.size(), 2u);
 }
 
+/// A list of jobs takes over what was finished only while all of these are the same.
+TEST_F(SdfIncludes, TheSceneNamesEveryFileThatItWasMadeOf) {
+  write_model("inner.sdf", "");
+  write_model("outer.sdf", include("inner.sdf", "i"));
+  write("world.sdf",
+        "<world name=\"w\">" + include("outer.sdf", "a") + include("inner.sdf", "b") + "</world>");
+  const auto file = [&](const char* name) {
+    return std::filesystem::weakly_canonical(path(name)).string();
+  };
+  EXPECT_EQ(read_scene_file(path("world.sdf")).files,
+            (std::vector<std::string>{file("inner.sdf"), file("outer.sdf")}));
+  EXPECT_TRUE(read_scene_file(path("inner.sdf")).files.empty());
+}
+
 TEST_F(SdfIncludes, AFileThatIncludesItselfIsNamed) {
   write_model("m.sdf", include("m.sdf", "a"));
   EXPECT_NAMES(refusal_of("m.sdf"), "m.sdf:3: model 'm': <include>: " + path("m.sdf"));

@@ -224,6 +224,7 @@ TEST_F(SdfReaderMeshes, ConvexMeshSaysThatNothingIsAdded) {
   EXPECT_TRUE(mentions(scene, "'m' and 1 more"));
   EXPECT_EQ(hull.data, std::get<collision::ConvexHull>(scene.colliders.at(1).shape).data)
       << "one file, one hull";
+  EXPECT_EQ(scene.files, std::vector<std::string>{(folder_ / "tetrahedron.obj").string()});
 }
 
 TEST_F(SdfReaderMeshes, StlColladaAndModelUrisAreRead) {
