@@ -172,6 +172,7 @@ class InteriorPoint::Workspace {
   [[nodiscard]] bool newton_direction();
   [[nodiscard]] bool factor();
   int guess_set();
+  [[nodiscard]] bool approach_by_proximal_points();
   [[nodiscard]] bool cross_over();
   bool polish(int most_factorizations);
 
@@ -336,6 +337,9 @@ bool InteriorPoint::Workspace::start_warm(const Vector& warm_start) {
     return true;
   }
   guess_.clear();
+  if (approach_by_proximal_points()) {
+    return true;
+  }
   const double size =
       std::max(problem_.g().cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
   const double floor = std::max(std::sqrt(sum / static_cast<double>(n)), 1e-10 * size);
@@ -365,6 +369,23 @@ bool InteriorPoint::Workspace::start_warm(const Vector& warm_start) {
     }
   }
   return false;
+}
+
+/// From a start that is near, proximal points take about as many factorisations as the interior
+/// point, each with one solve and nothing else; not where masses differ much. @return whether the
+/// problem is solved
+bool InteriorPoint::Workspace::approach_by_proximal_points() {
+  constexpr double kNear = 0.03;
+  constexpr double kFirstProximal = 1e-4;
+  constexpr int kMostSteps = 10;
+  constexpr int kMostFactorizations = 36;
+  if (body_space_ && are_alike_ && problem_.best_residual() <= kNear) {
+    proximal_newton_.improve(problem_, bodies_, std::max(kFirstProximal, settings_.polish_proximal),
+                             settings_.polish_proximal, kMostSteps,
+                             bodies_.factorizations() + kMostFactorizations, settings_.tolerance,
+                             *deadline_);
+  }
+  return problem_.best_residual() <= settings_.tolerance;
 }
 
 /// Tries the set of all rows from x = 0, where all contacts press at rest. @return whether the
@@ -600,9 +621,10 @@ bool InteriorPoint::Workspace::cross_over() {
 bool InteriorPoint::Workspace::polish(int most_factorizations) {
   constexpr double kWorthPolishing = 1e-4;  // from a worse start the active set is a guess
   if (body_space_ && problem_.best_residual() <= kWorthPolishing) {
-    proximal_newton_.improve(
-        problem_, bodies_, settings_.polish_proximal, settings_.max_polish_steps,
-        bodies_.factorizations() + most_factorizations, settings_.tolerance, *deadline_);
+    proximal_newton_.improve(problem_, bodies_, settings_.polish_proximal,
+                             settings_.polish_proximal, settings_.max_polish_steps,
+                             bodies_.factorizations() + most_factorizations, settings_.tolerance,
+                             *deadline_);
   }
   return problem_.best_residual() <= settings_.tolerance;
 }

@@ -72,6 +72,7 @@ double ProximalNewton::line_search(const ScaledProblem& problem, const WhitenedR
 bool ProximalNewton::step(ScaledProblem& problem, BodySpaceSystem& system, double proximal,
                           int most_factorizations) {
   constexpr int kMostNewtonSteps = 30;
+  constexpr int kMostStale = 4;
   constexpr double kVanished = 1e-10;  // of the first gradient: rounding, and rows on their bounds
   const WhitenedRows& rows = system.rows();
   point_ = x_;
@@ -79,7 +80,8 @@ bool ProximalNewton::step(ScaledProblem& problem, BodySpaceSystem& system, doubl
   velocity_.setZero(rows.degrees_of_freedom());
   e_.resize(rows.rows());
   double first = 0.0;
-  double last = kInfinity;
+  double least = kInfinity;
+  int stale = 0;  // steps since the least gradient: phi falls, its gradient may grow for a while
   for (int newton = 0;; ++newton) {
     dual_gradient(problem, rows, velocity_, gradient_);
     const double size = gradient_.size() > 0 ? gradient_.cwiseAbs().maxCoeff() : 0.0;
@@ -88,12 +90,13 @@ bool ProximalNewton::step(ScaledProblem& problem, BodySpaceSystem& system, doubl
       return false;
     }
     first = newton == 0 ? size : first;
+    stale = size < least ? 0 : stale + 1;
+    least = std::min(size, least);
     if (size <= 1e-14 * (speed + change_.cwiseAbs().maxCoeff()) || size <= kVanished * first ||
-        newton == kMostNewtonSteps || (newton > 3 && size >= last) ||
+        newton == kMostNewtonSteps || stale == kMostStale ||
         system.factorizations() >= most_factorizations) {
       break;
     }
-    last = size;
     for (Index i = 0; i < rows.rows(); ++i) {
       const double x = point_[i] + change_[i];
       e_[i] = x > problem.lower()[i] && x < problem.upper()[i] ? 0.0 : kInfinity;
@@ -118,13 +121,18 @@ bool ProximalNewton::step(ScaledProblem& problem, BodySpaceSystem& system, doubl
 }
 
 void ProximalNewton::improve(ScaledProblem& problem, BodySpaceSystem& system, double proximal,
-                             int most_steps, int most_factorizations, double tolerance,
-                             const Deadline& deadline) {
-  weight_ = system.rows().compliance().array() + proximal;
+                             double least_proximal, int most_steps, int most_factorizations,
+                             double tolerance, const Deadline& deadline) {
+  constexpr double kFalls = 0.1;
   x_ = problem.best();
-  has_factor_ = false;
   double before = problem.best_residual();
+  double weighed = -1.0;
   for (int k = 0; k < most_steps && !deadline.passed(); ++k) {
+    if (proximal != weighed) {
+      weight_ = system.rows().compliance().array() + proximal;
+      has_factor_ = false;
+      weighed = proximal;
+    }
     if (!step(problem, system, proximal, most_factorizations)) {
       return;
     }
@@ -134,6 +142,7 @@ void ProximalNewton::improve(ScaledProblem& problem, BodySpaceSystem& system, do
       return;
     }
     before = after;
+    proximal = std::max(kFalls * proximal, least_proximal);
   }
 }
 

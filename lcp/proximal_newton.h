@@ -27,10 +27,14 @@ class ProximalNewton {
  public:
   /// Outer steps from the problem's best x until the residual no longer halves or is a tenth of
   /// the tolerance. A set of rows that has just been factored is not factored again.
-  /// @param proximal delta > 0, of a unit diagonal @param most_steps outer steps
+  /// @param proximal delta > 0 of the first step, of a unit diagonal; a tenth of it in every
+  /// further one, down to least_proximal: large ones are quick from far away, small ones near the
+  /// solution
+  /// @param most_steps outer steps
   /// @param most_factorizations of all steps together
-  void improve(ScaledProblem& problem, BodySpaceSystem& system, double proximal, int most_steps,
-               int most_factorizations, double tolerance, const Deadline& deadline);
+  void improve(ScaledProblem& problem, BodySpaceSystem& system, double proximal,
+               double least_proximal, int most_steps, int most_factorizations, double tolerance,
+               const Deadline& deadline);
 
  private:
   [[nodiscard]] bool step(ScaledProblem& problem, BodySpaceSystem& system, double proximal,
