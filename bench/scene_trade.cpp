@@ -37,9 +37,10 @@ void check_rest(const Scene& scene, const validation::RunOptions& options,
 
 std::vector<SteppedScene> larger_scenes() {
   constexpr double kStep = 1.0 / 60.0;
-  return {stack_scene(20, kStep, 1.0), stack_scene(100, kStep, 1.0), pyramid_scene(10, kStep, 1.0),
-          pyramid_scene(20, kStep, 1.0), pyramid_scene(44, kStep, 1.0),
-          heavy_scene(1e6, kStep, 1.0), heavy_scene(1e9, kStep, 1.0)};
+  return {stack_scene(20, kStep, 1.0),   stack_scene(100, kStep, 1.0),
+          pyramid_scene(10, kStep, 1.0), pyramid_scene(20, kStep, 1.0),
+          pyramid_scene(44, kStep, 1.0), heavy_scene(1e6, kStep, 1.0),
+          heavy_scene(1e9, kStep, 1.0)};
 }
 
 TradeScene resting(const SteppedScene& stepped) {

@@ -40,6 +40,16 @@ struct Playback {
     Placement local;   ///< shape frame in the body frame
   };
 
+  /// What holds two bodies together, drawn from the centre of each to its anchor.
+  struct DrawnJoint {
+    std::string name;
+    std::string kind;  ///< "hinge", "ball", ... (core/model/joint.h)
+    int body_a = 0;    ///< into bodies
+    int body_b = 0;    ///< the same
+    std::array<double, 3> anchor_a = {0.0, 0.0, 0.0};  ///< in the frame of A, m
+    std::array<double, 3> anchor_b = {0.0, 0.0, 0.0};  ///< in the frame of B, m
+  };
+
   /// A contact as the engine left it after the steps since the frame before.
   struct DrawnContact {
     int body_a = 0;  ///< into bodies
@@ -65,6 +75,7 @@ struct Playback {
   std::array<double, 3> gravity = {0.0, 0.0, 0.0};  ///< m/s^2
   std::vector<DrawnBody> bodies;
   std::vector<DrawnShape> shapes;
+  std::vector<DrawnJoint> joints;
   std::vector<Surface> surfaces;
   std::vector<PlaybackTrack> tracks;
 };

@@ -178,6 +178,15 @@ Json shape_json(const Playback::DrawnShape& shape) {
           {"orientation", numbers(shape.local.orientation)}};
 }
 
+Json joint_json(const Playback::DrawnJoint& joint) {
+  return {{"name", joint.name},
+          {"kind", joint.kind},
+          {"body_a", joint.body_a},
+          {"body_b", joint.body_b},
+          {"anchor_a", numbers(joint.anchor_a)},
+          {"anchor_b", numbers(joint.anchor_b)}};
+}
+
 Json surface_json(const Playback::Surface& surface) {
   Json vertices = Json::array();
   for (const auto& vertex : surface.vertices) {
@@ -198,10 +207,12 @@ Json playback_json(const Playback& playback) {
   Json result = {{"gravity", numbers(playback.gravity)},
                  {"bodies", Json::array()},
                  {"shapes", Json::array()},
+                 {"joints", Json::array()},
                  {"surfaces", Json::array()},
                  {"tracks", Json::array()}};
   for (const auto& body : playback.bodies) result["bodies"].push_back(body_json(body));
   for (const auto& shape : playback.shapes) result["shapes"].push_back(shape_json(shape));
+  for (const auto& joint : playback.joints) result["joints"].push_back(joint_json(joint));
   for (const auto& surface : playback.surfaces) result["surfaces"].push_back(surface_json(surface));
   for (const auto& track : playback.tracks) result["tracks"].push_back(track_json(track));
   return result;

@@ -35,6 +35,9 @@ void visit_fields(auto& archive, Reflects<Playback::Surface> auto& surface) {
 void visit_fields(auto& archive, Reflects<Playback::DrawnShape> auto& shape) {
   archive(shape.name, shape.body, shape.kind, shape.sizes, shape.surface, shape.local);
 }
+void visit_fields(auto& archive, Reflects<Playback::DrawnJoint> auto& joint) {
+  archive(joint.name, joint.kind, joint.body_a, joint.body_b, joint.anchor_a, joint.anchor_b);
+}
 void visit_fields(auto& archive, Reflects<Playback::Frame> auto& frame) {
   archive(frame.time, frame.poses, frame.contacts, frame.all_contacts);
 }
@@ -42,7 +45,8 @@ void visit_fields(auto& archive, Reflects<Playback::PlaybackTrack> auto& track) 
   archive(track.engine, track.frames);
 }
 void visit_fields(auto& archive, Reflects<Playback> auto& playback) {
-  archive(playback.gravity, playback.bodies, playback.shapes, playback.surfaces, playback.tracks);
+  archive(playback.gravity, playback.bodies, playback.shapes, playback.joints, playback.surfaces,
+          playback.tracks);
 }
 void visit_fields(auto& archive, Reflects<SceneReport> auto& report) {
   archive(report.name, report.title, report.description, report.source, report.text, report.builtin,

@@ -205,6 +205,10 @@ Playback make_playback(const Scene& scene, const Runs& runs) {
   }
   ShapeWriter shapes(playback);
   for (const collision::Collider& collider : scene.colliders) shapes.add(collider);
+  for (const Joint& joint : scene.joints) {
+    playback.joints.push_back({joint.name, std::string(to_string(joint.kind)), joint.body_a,
+                               joint.body_b, numbers(joint.anchor_a), numbers(joint.anchor_b)});
+  }
   runs.for_each([&](const Track& track) { playback.tracks.push_back(play(scene, track)); });
   return playback;
 }

@@ -85,6 +85,23 @@ TEST(Playback, PosesComeBackToASixteenthBit) {
   }
 }
 
+TEST(Playback, AJointIsThereWithItsAnchors) {
+  const Scene scene = builtin("pendulum", 0.1);
+  ASSERT_FALSE(scene.joints.empty());
+  const Json joints = playback_json(make_playback(scene, both(scene)))["joints"];
+  ASSERT_EQ(joints.size(), scene.joints.size());
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const Joint& joint = scene.joints[i];
+    EXPECT_EQ(joints[i]["kind"], to_string(joint.kind));
+    EXPECT_EQ(joints[i]["body_a"], joint.body_a);
+    EXPECT_EQ(joints[i]["body_b"], joint.body_b);
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(joints[i]["anchor_a"][k].get<double>(), joint.anchor_a[k], 1e-6);
+      EXPECT_NEAR(joints[i]["anchor_b"][k].get<double>(), joint.anchor_b[k], 1e-6);
+    }
+  }
+}
+
 TEST(Playback, ImpactsBetweenFramesAreSeenInBothEngines) {
   Scene scene = builtin("ball-drop-e0.5", 1.0);
   scene.step /= 8.0;

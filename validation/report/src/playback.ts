@@ -24,6 +24,16 @@ export interface PlaybackSurface {
   triangles: number[];
 }
 
+/** Anchors in the frames of their bodies. */
+export interface PlaybackJoint {
+  name: string;
+  kind: string;
+  body_a: number;
+  body_b: number;
+  anchor_a: number[];
+  anchor_b: number[];
+}
+
 /** As report.json packs it: docs/report-schema.md. */
 export interface PackedTrack {
   engine: string;
@@ -39,6 +49,7 @@ export interface Playback {
   gravity: number[];
   bodies: PlaybackBody[];
   shapes: PlaybackShape[];
+  joints?: PlaybackJoint[];
   surfaces: PlaybackSurface[];
   tracks: PackedTrack[];
 }
@@ -223,6 +234,29 @@ export function niceBelow(value: number): number {
 export interface Bounds {
   low: [number, number, number];
   high: [number, number, number];
+}
+
+/** A straight piece from a point of one body to a point of another, or of the same. */
+export interface Rod {
+  bodies: [number, number];
+  points: [number[], number[]];
+}
+
+/** What shows the joints: from the centre of each body that moves to its anchor, and between the
+ * anchors that are apart. */
+export function rodsOf(playback: Playback): Rod[] {
+  const rods: Rod[] = [];
+  for (const joint of playback.joints ?? []) {
+    for (const [body, anchor] of [[joint.body_a, joint.anchor_a], [joint.body_b, joint.anchor_b]] as const) {
+      if (playback.bodies[body]?.kind !== 'fixed' && Math.hypot(...anchor) > 0) {
+        rods.push({ bodies: [body, body], points: [[0, 0, 0], anchor] });
+      }
+    }
+    if (joint.kind === 'distance' || joint.kind === 'slider') {
+      rods.push({ bodies: [joint.body_a, joint.body_b], points: [joint.anchor_a, joint.anchor_b] });
+    }
+  }
+  return rods;
 }
 
 /** How far a shape reaches from its body's origin, or a bound of it; a half-space counts as nothing. */

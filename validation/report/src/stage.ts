@@ -4,9 +4,9 @@
 import * as THREE from 'three';
 import { kForceColour, stageColours } from './palette';
 import {
-  boundsOf, contactsAt, movingNumbers, niceBelow, posesAt, reach, typicalForce,
+  boundsOf, contactsAt, movingNumbers, niceBelow, posesAt, reach, rodsOf, typicalForce,
 } from './playback';
-import type { Playback, PlaybackShape, PlaybackSurface, Track } from './playback';
+import type { Playback, PlaybackShape, PlaybackSurface, Rod, Track } from './playback';
 
 const kMany = 200;
 const kFieldOfView = 32;
@@ -120,6 +120,10 @@ function matrixOf({ position, orientation }: Placement, scale = [1, 1, 1]): THRE
     new THREE.Quaternion(i, j, k, w), new THREE.Vector3(sx, sy, sz));
 }
 
+function vector([x = 0, y = 0, z = 0]: readonly number[]): THREE.Vector3 {
+  return new THREE.Vector3(x, y, z);
+}
+
 /** Of a body that does not move, in the world; else in the body. */
 function shapeMatrix(playback: Playback, shape: PlaybackShape, scale = [1, 1, 1]): THREE.Matrix4 {
   const body = playback.bodies[shape.body];
@@ -140,6 +144,12 @@ function framing(tracks: readonly Track[], playback: Playback): THREE.Sphere {
     if (extent > 0 && far > 1.5 * extent) continue;
     centre.setFromMatrixPosition(shapeMatrix(playback, shape));
     box.expandByPoint(centre.clone().addScalar(far)).expandByPoint(centre.clone().addScalar(-far));
+  }
+  for (const { body_a, body_b, anchor_a, anchor_b } of playback.joints ?? []) {
+    for (const [body, anchor] of [[body_a, anchor_a], [body_b, anchor_b]] as const) {
+      const holder = playback.bodies[body];
+      if (holder?.kind === 'fixed') box.expandByPoint(vector(anchor).applyMatrix4(matrixOf(holder)));
+    }
   }
   const sphere = box.isEmpty() ? new THREE.Sphere(new THREE.Vector3(), 1) : box.getBoundingSphere(new THREE.Sphere());
   sphere.radius = Math.max(sphere.radius, 1e-6);
@@ -162,10 +172,15 @@ function arrowGeometry(): THREE.BufferGeometry {
 class Side {
   readonly scene = new THREE.Scene();
   private readonly batches: Batch[] = [];
+  private readonly rods: Rod[];
+  private readonly rodMesh: THREE.InstancedMesh;
   private readonly points: THREE.InstancedMesh;
   private readonly arrows: THREE.InstancedMesh;
   private readonly poses: Float32Array;
   private readonly matrices: THREE.Matrix4[];
+  /** Of each body, its place in matrices, or -1: it stays where `still` says. */
+  private readonly numbers: readonly number[];
+  private readonly still: THREE.Matrix4[];
   /** What the sizes of dots and arrows are shares of, m. */
   private readonly markSize: number;
   private readonly disposables: { dispose(): void }[] = [];
@@ -180,6 +195,11 @@ class Side {
     this.scene.add(sun);
     const colours = stageColours(track.engine, dark);
     this.addBatches(playback, new THREE.Color(colours.moving), new THREE.Color(colours.fixed));
+    this.rods = rodsOf(playback);
+    this.numbers = movingNumbers(playback.bodies);
+    this.still = playback.bodies.map((body) => matrixOf(body));
+    this.rodMesh = this.instances(alongZ(new THREE.CylinderGeometry(1, 1, 1, 8)).translate(0, 0, 0.5),
+      new THREE.MeshLambertMaterial({ color: colours.point }), this.rods.length);
     for (const shape of playback.shapes) {
       if (shape.kind === 'half_space') this.addPlane(shapeMatrix(playback, shape), centre, colours);
     }
@@ -275,7 +295,25 @@ class Side {
       }
       mesh.instanceMatrix.needsUpdate = true;
     }
+    this.placeRods();
     this.placeContacts(t, showPoints, showForces);
+  }
+
+  private placeRods(): void {
+    const thick = 0.006 * this.size;
+    this.rods.forEach(({ bodies, points }, i) => {
+      const [from, to] = [0, 1].map((end) => {
+        const body = bodies[end as 0 | 1];
+        const matrix = this.matrices[this.numbers[body] ?? -1] ?? this.still[body] ?? kProduct.identity();
+        return vector(points[end as 0 | 1]).applyMatrix4(matrix);
+      }) as [THREE.Vector3, THREE.Vector3];
+      kDirection.subVectors(to, from);
+      kScale.set(thick, thick, kDirection.length());
+      kTurn.setFromUnitVectors(kUp, kDirection.normalize());
+      this.rodMesh.setMatrixAt(i, kProduct.compose(from, kTurn, kScale));
+    });
+    this.rodMesh.count = this.rods.length;
+    this.rodMesh.instanceMatrix.needsUpdate = true;
   }
 
   private placeContacts(t: number, showPoints: boolean, showForces: boolean): void {

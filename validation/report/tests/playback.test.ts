@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { Clock } from '../src/clock';
 import {
-  boundsOf, contactsAt, frameAtOrAfter, nearestFrame, niceBelow, posesAt, typicalForce, unpack,
+  boundsOf, contactsAt, frameAtOrAfter, nearestFrame, niceBelow, posesAt, rodsOf, typicalForce, unpack,
 } from '../src/playback';
 import type { Playback, PlaybackBody, Track } from '../src/playback';
 
@@ -51,6 +51,19 @@ test('positions are middle + step k, of the bodies that are not fixed', () => {
   assert.equal(bodies, 2);
   assert.deepEqual([...poses.slice(0, 7)], [0, 0, 1, 1, 0, 0, 0]);
   assert.deepEqual([...poses.slice(14, 21)], [2, 0, 1, 0, 1, 0, 0]);
+});
+
+test('joints are drawn from moving centres to their anchors, and between anchors that are apart', () => {
+  const all = playback();
+  assert.deepEqual(rodsOf(all), []);
+  const joint = { name: 'j', body_a: 1, body_b: 0, anchor_a: [0, 0, 5], anchor_b: [1, 2, 3] };
+  all.joints = [{ ...joint, kind: 'hinge' }];
+  assert.deepEqual(rodsOf(all), [{ bodies: [1, 1], points: [[0, 0, 0], [0, 0, 5]] }]);
+  all.joints = [{ ...joint, kind: 'distance', anchor_a: [0, 0, 0], body_b: 2 }];
+  assert.deepEqual(rodsOf(all), [
+    { bodies: [2, 2], points: [[0, 0, 0], [1, 2, 3]] },
+    { bodies: [1, 2], points: [[0, 0, 0], [1, 2, 3]] },
+  ]);
 });
 
 test('forces are shown on the moving body, of two on the one that is pushed up', () => {
