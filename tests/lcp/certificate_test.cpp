@@ -500,6 +500,27 @@ TEST(Certificate, NeitherLiesNorRefusesFrom1e150Downto1e150) {
   }
 }
 
+/// Sums of |M||z| that doubles cannot hold, or hold with fewer digits, count like those they can.
+TEST(Certificate, SumsBeyondTheRangeOfDoublesCountToo) {
+  const auto same_as_unscaled = [](const Problem& problem, const Vector& z, double m, double by) {
+    Problem scaled = problem;
+    scaled.M = Matrix(m * std::get<Matrix>(problem.M));
+    scaled.q = m * (by * problem.q);
+    const Certificate unscaled = certify(problem, z);
+    const Certificate c = certify(scaled, by * z);
+    EXPECT_GT(unscaled.rounding_floor, 0.0);
+    EXPECT_DOUBLE_EQ(c.rounding_floor, unscaled.rounding_floor);
+    EXPECT_DOUBLE_EQ(c.unit_free_residual, unscaled.unit_free_residual);
+    EXPECT_DOUBLE_EQ(c.backward_error, unscaled.backward_error);
+  };
+  const Vector inexact = vector({1.0 + 1e-9, 1.0});
+  same_as_unscaled(two_by_two(), inexact, 0x1p-500, 0x1p-500);  // 2^-1000
+  same_as_unscaled(two_by_two(), inexact, 0x1p-300, 0x1p-200);  // in range
+  const double small = 0x1p-120;
+  same_as_unscaled(lcp(Matrix{{1, -1}, {-1, 1}}, vector({-small, -small})), inexact, 0x1p600,
+                   0x1p500);  // |M||z| is 2^1101
+}
+
 TEST(Certificate, WrongAnswersAreNeverJudgedSolved) {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);

@@ -309,15 +309,17 @@ TEST_P(FactorizationCounts, ColdWarmAndToTheLastDigits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    AThousandRows, FactorizationCounts,
+    Families, FactorizationCounts,
     testing::Values(Counts{{"tower4", 250}, 10, 2}, Counts{{"tower8", 125}, 1, 2},
-                    Counts{{"pyramid2d", 16}, 18, 4}, Counts{{"pyramid3d", 6}, 11, 2},
-                    Counts{{"wall", 11}, 11, 4}, Counts{{"spheres", 1000}, 15, 5},
+                    Counts{{"pyramid2d", 16}, 18, 4}, Counts{{"pyramid2d", 30}, 32, 23},
+                    Counts{{"pyramid3d", 6}, 11, 2}, Counts{{"wall", 11}, 11, 4},
+                    Counts{{"spheres", 1000}, 15, 5},
                     Counts{{.family = "tower4", .size = 250, .at_rest = true}, 1, 2},
                     Counts{{.family = "pyramid2d", .size = 16, .at_rest = true}, 2, 4},
                     Counts{{.family = "pyramid3d", .size = 6, .at_rest = true}, 1, 2}),
     [](const auto& tested) {
-      return std::string(tested.param.spec.family) + (tested.param.spec.at_rest ? "AtRest" : "");
+      return std::string(tested.param.spec.family) + std::to_string(tested.param.spec.size) +
+             (tested.param.spec.at_rest ? "AtRest" : "");
     });
 
 /// The second problem has the size and the contacts of the first, and other velocities; the third
@@ -339,6 +341,25 @@ TEST_P(InteriorPointOnFamilies, SolvingAgainAllocatesNothing) {
   EXPECT_EQ(allocations.count(), 0) << "warm";
   solver.solve(bounded, warm);
   EXPECT_EQ(allocations.count(), 0) << "with bounds";
+}
+
+/// Where the active set of a warm start fails, proximal points go on from it and no interior
+/// iteration is needed; masses that differ much are left to the interior point.
+TEST(InteriorPoint, AFailedWarmSetIsGoneOnFromByProximalPoints) {
+  for (const double ratio : {1.0, 1e3}) {
+    const Problem problem = make_family({.family = ratio == 1.0 ? "pyramid2d" : "pyramid3d",
+                                         .size = ratio == 1.0 ? 30 : 12,
+                                         .mass_ratio = ratio});
+    InteriorPoint solver;
+    Result cold;
+    Result warm;
+    solver.solve(problem, cold);
+    solver.solve(perturbed(problem, 5), warm, &cold.z);
+    EXPECT_EQ(warm.status, Status::kSolved);
+    EXPECT_GT(warm.statistics.factorizations, 8) << "the set was not enough";
+    EXPECT_EQ(warm.statistics.iterations == 0, ratio == 1.0);
+    EXPECT_LE(definition_residual(perturbed(problem, 5), warm.z), 1e-7);
+  }
 }
 
 /// Where a factorisation costs much, sweeps find the set first: 13 factorisations without them.
