@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 #include <vector>
 
 namespace signorini::bench {
@@ -162,7 +163,14 @@ PeerRun run_peer(const PeerEntry& entry, const lcp::Problem& given, const lcp::P
     run.said = child.reason;
     return run;
   }
-  const auto timed = tools::from_bytes<TimedAnswer>(child.answer);
+  TimedAnswer timed;
+  try {
+    timed = tools::from_bytes<TimedAnswer>(child.answer);
+  } catch (const std::runtime_error& error) {
+    run.verdict = Verdict::kCrashed;
+    run.said = error.what();
+    return run;
+  }
   run.claim = timed.answer.claim;
   run.said = timed.answer.said;
   run.seconds = timed.seconds;

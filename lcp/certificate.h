@@ -11,7 +11,8 @@
 
 namespace signorini::lcp {
 
-/// How good a vector z is, recomputed from the caller's own M, q and bounds, in long double. With
+/// How good a vector z is, recomputed from the caller's own M, q and bounds, in long double
+/// (|M||z|, of which the rounding floors are made, in double where it has the range). With
 /// w = M z + q, D_i = M_ii where M_ii > 0 and 1 elsewhere, and the step
 ///
 ///     r_i(s) = z_i - clamp(z_i - w_i / s, lower_i, upper_i)     ( = min(z_i, w_i / s) for an LCP),

@@ -337,7 +337,7 @@ bool InteriorPoint::Workspace::start_warm(const Vector& warm_start) {
     return true;
   }
   guess_.clear();
-  if (approach_by_proximal_points()) {
+  if (sweeps_ == 0 && approach_by_proximal_points()) {
     return true;
   }
   const double size =

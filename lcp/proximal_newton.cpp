@@ -31,6 +31,7 @@ double ProximalNewton::line_search(const ScaledProblem& problem, const WhitenedR
   double slope = direction_.squaredNorm();
   double derivative = velocity_.dot(direction_) - change_.dot(g_direction_);
   breaks_.clear();
+  breaks_.reserve(2 * static_cast<std::size_t>(rows.rows()));
   for (Index i = 0; i < rows.rows(); ++i) {
     const double value = point_[i] - slack_[i] / weight_[i];
     const double rate = -g_direction_[i] / weight_[i];
@@ -70,7 +71,7 @@ double ProximalNewton::line_search(const ScaledProblem& problem, const WhitenedR
 
 /// x_ <- the proximal point's answer. @return false if it could not be found.
 bool ProximalNewton::step(ScaledProblem& problem, BodySpaceSystem& system, double proximal,
-                          int most_factorizations) {
+                          int most_factorizations, const Deadline& deadline) {
   constexpr int kMostNewtonSteps = 30;
   constexpr int kMostStale = 4;
   constexpr double kVanished = 1e-10;  // of the first gradient: rounding, and rows on their bounds
@@ -94,19 +95,15 @@ bool ProximalNewton::step(ScaledProblem& problem, BodySpaceSystem& system, doubl
     least = std::min(size, least);
     if (size <= 1e-14 * (speed + change_.cwiseAbs().maxCoeff()) || size <= kVanished * first ||
         newton == kMostNewtonSteps || stale == kMostStale ||
-        system.factorizations() >= most_factorizations) {
+        system.factorizations() >= most_factorizations || deadline.passed()) {
       break;
     }
     for (Index i = 0; i < rows.rows(); ++i) {
       const double x = point_[i] + change_[i];
       e_[i] = x > problem.lower()[i] && x < problem.upper()[i] ? 0.0 : kInfinity;
     }
-    if (!has_factor_ || e_ != factored_) {
-      has_factor_ = system.factor(e_, proximal);
-      if (!has_factor_) {
-        return false;
-      }
-      factored_ = e_;
+    if (!system.factor(e_, proximal)) {
+      return false;
     }
     direction_ = -gradient_;
     system.solve_in_body_space(direction_);
@@ -126,14 +123,9 @@ void ProximalNewton::improve(ScaledProblem& problem, BodySpaceSystem& system, do
   constexpr double kFalls = 0.1;
   x_ = problem.best();
   double before = problem.best_residual();
-  double weighed = -1.0;
   for (int k = 0; k < most_steps && !deadline.passed(); ++k) {
-    if (proximal != weighed) {
-      weight_ = system.rows().compliance().array() + proximal;
-      has_factor_ = false;
-      weighed = proximal;
-    }
-    if (!step(problem, system, proximal, most_factorizations)) {
+    weight_ = system.rows().compliance().array() + proximal;
+    if (!step(problem, system, proximal, most_factorizations, deadline)) {
       return;
     }
     problem.gradient(x_, slack_);

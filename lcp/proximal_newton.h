@@ -26,7 +26,7 @@ namespace signorini::lcp {
 class ProximalNewton {
  public:
   /// Outer steps from the problem's best x until the residual no longer halves or is a tenth of
-  /// the tolerance. A set of rows that has just been factored is not factored again.
+  /// the tolerance.
   /// @param proximal delta > 0 of the first step, of a unit diagonal; a tenth of it in every
   /// further one, down to least_proximal: large ones are quick from far away, small ones near the
   /// solution
@@ -38,13 +38,11 @@ class ProximalNewton {
 
  private:
   [[nodiscard]] bool step(ScaledProblem& problem, BodySpaceSystem& system, double proximal,
-                          int most_factorizations);
+                          int most_factorizations, const Deadline& deadline);
   void dual_gradient(const ScaledProblem& problem, const WhitenedRows& rows, const Vector& u,
                      Vector& gradient);
   double line_search(const ScaledProblem& problem, const WhitenedRows& rows);
 
-  bool has_factor_ = false;  // of factored_, with the weights at hand
-  Vector factored_;          // e_ of the last factorisation
   Vector x_, point_, base_slack_, weight_, velocity_, slack_, change_, gradient_, direction_,
       g_direction_, e_;
   std::vector<std::pair<double, double>> breaks_;

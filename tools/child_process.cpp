@@ -147,13 +147,9 @@ void settle_child(const ChildLimits& limits, pid_t parent) {
   ::_exit(0);  // no destructors, no buffers of the parent's streams
 }
 
-[[noreturn]] void become_program(const std::vector<std::string>& command, int input, int pipe) {
-  std::vector<std::string> words = command;
-  std::vector<char*> arguments;
-  for (std::string& word : words) {
-    arguments.push_back(word.data());
-  }
-  arguments.push_back(nullptr);
+/// @param arguments the program first, a null pointer last: made before the fork, where memory that
+/// ends is an exception
+[[noreturn]] void become_program(const std::vector<char*>& arguments, int input, int pipe) {
   write_message(pipe, kOutput, {});
   ::dup2(input, STDIN_FILENO);
   ::dup2(pipe, STDOUT_FILENO);
@@ -278,6 +274,16 @@ int wait_for(pid_t child) {
   return status;
 }
 
+/// Waits until a child has ended, or has closed its output and goes on for longer than its limit.
+void let_end(pid_t child, const ChildLimits& limits) {
+  Allowance allowance(child, limits.seconds);
+  siginfo_t ended = {};
+  while (::waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT | WNOHANG) == 0 &&
+         ended.si_pid == 0 && stopped == 0 && !allowance.is_used_up()) {
+    ::usleep(200);
+  }
+}
+
 /// @param live what the child does, with its end of the pipe; does not return
 /// @param is_program it becomes another program, whose exit other than 0 is a crash
 ChildAnswer run(const std::function<void(int pipe)>& live, bool is_program,
@@ -302,11 +308,15 @@ ChildAnswer run(const std::function<void(int pipe)>& live, bool is_program,
   }
   write_end.close();
   ChildAnswer result = listen(read_end.number(), child, limits);
+  if (is_program && result.end == ChildEnd::kAnswered) {
+    let_end(child, limits);  // it may still have to write its own exit status
+  }
   ::kill(child, SIGKILL);  // it has answered, or it never will; no effect on one that has died
   const int status = wait_for(child);
   if (result.end == ChildEnd::kAnswered && is_program && status != 0) {
     result.end = ChildEnd::kCrashed;
-    result.reason = std::exchange(result.answer, {});
+    result.reason = WIFEXITED(status) ? result.answer : std::string();
+    result.answer.clear();
   }
   if (result.end == ChildEnd::kCrashed && result.reason.empty()) {
     result.reason = describe_status(status);
@@ -330,7 +340,13 @@ ChildAnswer run_program(const std::vector<std::string>& command, std::string_vie
       ::lseek(file.number(), 0, SEEK_SET) != 0) {
     throw last_error("the input of another program");
   }
-  return run([&](int pipe) { become_program(command, file.number(), pipe); }, true, limits);
+  std::vector<std::string> words = command;
+  std::vector<char*> arguments;
+  for (std::string& word : words) {
+    arguments.push_back(word.data());
+  }
+  arguments.push_back(nullptr);
+  return run([&](int pipe) { become_program(arguments, file.number(), pipe); }, true, limits);
 }
 
 void stop_children() {

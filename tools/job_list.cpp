@@ -210,6 +210,9 @@ JobListResult run_job_list(const std::vector<Job>& jobs, const JobListOptions& o
   JobListResult result;
   result.jobs.resize(jobs.size());
   result.by_mpi = is_under_mpi();
+  // Before MPI starts, which loads libraries of its own.
+  const JobFiles files(is_first_rank() ? options.folder : std::filesystem::path(),
+                       options.settings);
   std::unique_ptr<JobCrew> crew;
   if (result.by_mpi) {
     std::unique_ptr<RankCrew> ranks = join_ranks(jobs);
@@ -220,7 +223,6 @@ JobListResult run_job_list(const std::vector<Job>& jobs, const JobListOptions& o
     }
     crew = std::move(ranks);
   }
-  const JobFiles files(options.folder, options.settings);
   Progress progress(options.shows_progress, jobs);
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     if (std::optional<JobResult> kept = files.find(jobs[i])) {

@@ -40,7 +40,8 @@ struct Playback {
     Placement local;   ///< shape frame in the body frame
   };
 
-  /// What holds two bodies together, drawn from the centre of each to its anchor.
+  /// What holds two bodies together: drawn from the centre of each that moves to its anchor, and
+  /// between the anchors of distances and sliders.
   struct DrawnJoint {
     std::string name;
     std::string kind;  ///< "hinge", "ball", ... (core/model/joint.h)

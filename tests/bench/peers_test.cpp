@@ -604,6 +604,14 @@ TEST(Peers, BulletInSinglePrecisionIsAsAccurateAsThat) {
   EXPECT_GT(in_float.seconds, 0.0);
   EXPECT_LT(in_double.certificate.natural_residual, 1e-12);
   EXPECT_GT(in_float.certificate.natural_residual, 1e-10);
+  // Its Lemke prints a warning of a large z, which must not get into the answer.
+  lcp::Problem large;
+  large.M = lcp::Matrix(lcp::Matrix::Identity(2, 2) * 1e-7);
+  large.q = lcp::Vector::Constant(2, -1.0);
+  const PeerRun warned =
+      run_peer(*called("bullet-float-lemke-lcp"), large, large, settings, limits);
+  EXPECT_NE(warned.verdict, Verdict::kCrashed) << warned.said;
+  EXPECT_FALSE(warned.said.empty());
   const PeerRun sweeps = run_peer(*called("bullet-float-pgs"), problem, problem, settings, limits);
   EXPECT_EQ(sweeps.verdict, Verdict::kSolved) << sweeps.said;
   EXPECT_GE(sweeps.iterations, 8);

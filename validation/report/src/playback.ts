@@ -248,7 +248,8 @@ export function rodsOf(playback: Playback): Rod[] {
   const rods: Rod[] = [];
   for (const joint of playback.joints ?? []) {
     for (const [body, anchor] of [[joint.body_a, joint.anchor_a], [joint.body_b, joint.anchor_b]] as const) {
-      if (playback.bodies[body]?.kind !== 'fixed' && Math.hypot(...anchor) > 0) {
+      const holder = playback.bodies[body];
+      if (holder !== undefined && holder.kind !== 'fixed' && Math.hypot(...anchor) > 0) {
         rods.push({ bodies: [body, body], points: [[0, 0, 0], anchor] });
       }
     }
