@@ -22,6 +22,8 @@ constexpr double kMostTolerance = 0.1;
 // What `sticking` is told of its aim after a correction, and the least that comes of it.
 constexpr double kAfterCorrection = 0.1;
 constexpr double kLeastAfterCorrection = 1e-10;
+constexpr int kCorrectionSets =
+    4;  // the start is near; where rounding hides that aim more are waste
 constexpr double kRowsOfAUnit = 1000.0;
 // However much a budget allows: a solver that has not ended by then does not.
 constexpr double kMostIterations = 1e4;
@@ -137,7 +139,7 @@ void IslandSolver::choose(const lcp::Problem& problem, bool is_warm, bool is_lim
   if (!is_limited) {
     const bool can_aim_lower = tolerance(problem) > kLeastAfterCorrection;
     if (chain_.empty() && is_warm && after_correction_ && can_aim_lower) {
-      chain_.push_back({"sticking", "the step before was a correction", 25, true});
+      chain_.push_back({"sticking", "the step before was a correction", kCorrectionSets, true});
     }
     chain_.push_back({"auto", "whatever it takes", -1, false});
     return;

@@ -62,8 +62,8 @@ struct IslandAnswer {
 /// What is at rest starts from its answer, and stays as it is while that is far below what is
 /// asked. A start that no longer is gets corrected, and the impulses of that step also stop what
 /// little moves: the next step must not start from them unasked, or it sets going as much the other
-/// way, and every second step is a correction. So after one sticking is tried first and told a
-/// tenth of its aim (down to 1e-10 of |q|), while the residual asked judges as ever.
+/// way, and every second step is a correction. So after one sticking is tried first (4 sets)
+/// and told a tenth of its aim (down to 1e-10 of |q|), while the residual asked judges as ever.
 ///
 /// With a budget auto, which knows none, gives way to interior-point (no friction), alart-curnier
 /// and nsgs. What the rest of the budget does not pay for is left out; where it pays for nothing
