@@ -380,10 +380,12 @@ bool InteriorPoint::Workspace::approach_by_proximal_points() {
   constexpr int kMostSteps = 10;
   constexpr int kMostFactorizations = 36;
   if (body_space_ && are_alike_ && problem_.best_residual() <= kNear) {
+    const int most = settings_.max_iterations >= 0
+                         ? std::min(settings_.max_iterations, kMostFactorizations)
+                         : kMostFactorizations;
     proximal_newton_.improve(problem_, bodies_, std::max(kFirstProximal, settings_.polish_proximal),
-                             settings_.polish_proximal, kMostSteps,
-                             bodies_.factorizations() + kMostFactorizations, settings_.tolerance,
-                             *deadline_);
+                             settings_.polish_proximal, kMostSteps, bodies_.factorizations() + most,
+                             settings_.tolerance, *deadline_);
   }
   return problem_.best_residual() <= settings_.tolerance;
 }

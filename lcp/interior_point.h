@@ -53,14 +53,14 @@ struct InteriorPointSettings : SolverSettings {
 /// nonsymmetric; the method is made for semidefinite M, whatever else it solves.
 ///
 /// A warm start is tried as an active set first; if that fails and its residual is below 0.03, by
-/// proximal points (proximal_newton.h, up to 36 factorisations) where masses are within 1 to 100
-/// and no sweeps were made. Where contacts of bodies have no upper bounds and masses within 1 to
-/// 100, two things are tried besides. If a factorisation costs much beside a sweep (by its flops a
-/// row: piles, whose graph of bodies has large separators), 200 sweeps of Nncg, or 60 from a warm
-/// start, find the contacts that press to within a few; their set is mostly settled by one to three
-/// factorisations, and the result says so. Else, without a warm start, the set of all rows: at rest
-/// nearly all contacts press, and one or two factorisations are all; if not, that costs one to
-/// three more.
+/// proximal points (proximal_newton.h, up to 36 factorisations or max_iterations) where masses are
+/// within 1 to 100 and no sweeps were made. Where contacts of bodies have no upper bounds and
+/// masses within 1 to 100, two things are tried besides. If a factorisation costs much beside a
+/// sweep (by its flops a row: piles, whose graph of bodies has large separators), 200 sweeps of
+/// Nncg, or 60 from a warm start, find the contacts that press to within a few; their set is mostly
+/// settled by one to three factorisations, and the result says so. Else, without a warm start, the
+/// set of all rows: at rest nearly all contacts press, and one or two factorisations are all; if
+/// not, that costs one to three more.
 ///
 /// Takes no coupled limits and no cones. Statuses beside solved: kIterationLimit, kTimeLimit,
 /// kStalled, and kNumericalBreakdown if a factorisation failed; z is the best iterate that was

@@ -22,8 +22,8 @@ constexpr double kMostTolerance = 0.1;
 // What `sticking` is told of its aim after a correction, and the least that comes of it.
 constexpr double kAfterCorrection = 0.1;
 constexpr double kLeastAfterCorrection = 1e-10;
-constexpr int kCorrectionSets =
-    4;  // the start is near; where rounding hides that aim more are waste
+// The start is near; where rounding hides that aim more sets are waste.
+constexpr int kCorrectionSets = 4;
 constexpr double kRowsOfAUnit = 1000.0;
 // However much a budget allows: a solver that has not ended by then does not.
 constexpr double kMostIterations = 1e4;

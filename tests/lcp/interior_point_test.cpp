@@ -358,6 +358,11 @@ TEST(InteriorPoint, AFailedWarmSetIsGoneOnFromByProximalPoints) {
     EXPECT_EQ(warm.status, Status::kSolved);
     EXPECT_GT(warm.statistics.factorizations, 8) << "the set was not enough";
     EXPECT_EQ(warm.statistics.iterations == 0, ratio == 1.0);
+    InteriorPoint limited({{.max_iterations = 0}});
+    Result set_alone;
+    limited.solve(perturbed(problem, 5), set_alone, &cold.z);
+    EXPECT_EQ(set_alone.status, Status::kIterationLimit);
+    EXPECT_LE(set_alone.statistics.factorizations, 8) << "an iteration is a factorisation";
     EXPECT_LE(definition_residual(perturbed(problem, 5), warm.z), 1e-7);
   }
 }
