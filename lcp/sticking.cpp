@@ -28,10 +28,13 @@ constexpr double kContracts = 0.97;
 constexpr int kFirstFrictionRounds = 4;
 constexpr double kRounding = 1e-14;
 // What a start that is solved must meet, of the tolerance, to be left as it is; else it is given
-// this many sets. In a scene at rest the error of one step is in the q of the next, where it adds
-// up.
+// this many sets, the second where the first is not much worse than the start. In a scene at rest
+// the error of one step is in the q of the next, where it adds up.
 constexpr double kAsGood = 0.01;
 constexpr int kSetsToPolish = 2;
+constexpr double kMuchWorse = 10.0;
+// Sets so much worse than the start that may follow each other where it is not solved.
+constexpr int kWorsePatience = 3;
 // Steps of refine(), what one must leave of the residual to count, and how many may not.
 constexpr int kMostRefinements = 60;
 constexpr double kRefines = 0.9;
@@ -75,7 +78,8 @@ class Sticking::Workspace {
   std::vector<double> impulse_, velocity_;  // of the bodies, caller's units
   std::vector<long double> long_z_, long_w_, long_impulse_, long_velocity_;
   double best_ = kInfinity;
-  double fine_ = 0.0;  // residuals up to this need not be known better
+  double fine_ = 0.0;   // residuals up to this need not be known better
+  double still_ = 0.0;  // a slip up to this speed does as well as none
   int factorizations_ = 0;
 };
 
@@ -255,7 +259,8 @@ void Sticking::Workspace::seek_inside() {
   }
 }
 
-/// z_T = -mu z_N w_T/|w_T| where a contact slides. @return whether any moved; `change`: the most
+/// z_T = -mu z_N w_T/|w_T| where a contact slides; where it does as good as not, the direction is
+/// rounding and that of z_T is kept. @return whether any moved; `change`: the most
 bool Sticking::Workspace::update_friction(double& change) {
   change = 0.0;
   for (std::size_t c = 0; c < groups_.size(); ++c) {
@@ -266,10 +271,14 @@ bool Sticking::Workspace::update_friction(double& change) {
     auto friction = x_.segment(first + 1, dimension - 1);
     const auto slip = r_.segment(first + 1, dimension - 1);
     const double speed = slip.norm();
+    const double size = friction.norm();
+    const double limit = mu * std::max(x_[first], 0.0);
     h_.resize(x_.size());
     auto next = h_.segment(first + 1, dimension - 1);
-    if (speed > 0.0) {
-      next = -mu * std::max(x_[first], 0.0) / speed * slip;
+    if (speed * rows_.scale()[first] > still_ || (speed > 0.0 && size == 0.0)) {
+      next = -limit / speed * slip;
+    } else if (size > 0.0) {
+      next = limit / size * friction;
     } else {
       next = friction;
     }
@@ -371,15 +380,18 @@ Status Sticking::Workspace::solve(const Problem& problem, const StickingSettings
     result.z = z_;
     return Status::kStalled;  // solved: the certificate will say so
   }
+  still_ = kAsGood * settings.tolerance * problem.q.cwiseAbs().maxCoeff();
   set(problem);
   guess();
   int most =
       settings.max_iterations >= 0 ? settings.max_iterations : StickingSettings::kDefaultSets;
-  if (start <= settings.tolerance) {
+  const bool polishes = start <= settings.tolerance;
+  if (polishes) {
     most = std::min(most, kSetsToPolish);
   }
   Status ending = Status::kIterationLimit;
   int without = 0;
+  int worse = 0;
   double least = kInfinity;
   for (int k = 0; k < most; ++k) {
     if (deadline.passed()) {
@@ -396,6 +408,11 @@ Status Sticking::Workspace::solve(const Problem& problem, const StickingSettings
     without = residual < 0.9 * least ? 0 : without + 1;
     least = std::min(residual, least);
     const bool solved = residual <= kBelow * settings.tolerance;
+    worse = residual > kMuchWorse * start ? worse + 1 : 0;
+    if (worse == (polishes ? 1 : kWorsePatience)) {
+      ending = Status::kStalled;
+      break;
+    }
     if (!solved && without <= kPatience && correct() > 0) {
       continue;
     }

@@ -27,6 +27,8 @@ constexpr int kCorrectionSets = 4;
 constexpr double kRowsOfAUnit = 1000.0;
 // However much a budget allows: a solver that has not ended by then does not.
 constexpr double kMostIterations = 1e4;
+// Impulses that differ by less, of the largest, are the same.
+constexpr double kSame = 1e-12;
 constexpr double kLeastSeconds = 1e-9;  // a solver's limit is > 0
 
 double largest_q(const lcp::Problem& problem) {
@@ -55,6 +57,11 @@ double spent(std::string_view name, const lcp::Result& result) {
   const int steps = sweeps(name) ? statistics.iterations
                                  : std::max(statistics.factorizations, statistics.iterations);
   return std::max(steps, 0) * unit_cost(name, result.z.size());
+}
+
+/// By more than rounding.
+bool differ(const lcp::Vector& z, const lcp::Vector& start) {
+  return !(z - start).isZero(kSame * z.lpNorm<Eigen::Infinity>());
 }
 
 }  // namespace
@@ -258,7 +265,8 @@ void IslandSolver::solve_by_dial(const lcp::Problem& problem, const StepBudget& 
   result.statistics.solve_seconds = seconds;
   island.corrected = is_warm && lcp::is_solved(result.status) && !attempts_.empty() &&
                      attempts_.back().solver == "sticking" &&
-                     attempts_.back().statistics.factorizations > 0;
+                     attempts_.back().statistics.factorizations > 0 &&
+                     differ(result.z, island.start);
   std::swap(result.attempts, attempts_);
 }
 

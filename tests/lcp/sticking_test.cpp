@@ -104,6 +104,55 @@ TEST(Sticking, ATowerPushedBeyondFrictionSlidesAsAlartCurnierSays) {
   EXPECT_GT(result.w.cwiseAbs().maxCoeff(), 1e-3);  // it does slide
 }
 
+TEST(Sticking, ASlipThatIsRoundingDoesNotTurnFriction) {
+  // Unit mass / 2 on two contacts at one place that strain against each other, both at the edge of
+  // their cones, gravity off by 1e-9.
+  FactoredMatrix A;
+  A.mass.add_inverse(2.0 * Matrix::Identity(3, 3));
+  for (int row = 0; row < 6; ++row) {
+    A.add_row();
+    A.add_entry(0, Vector(Vector::Unit(3, row % 3)));
+  }
+  Problem problem;
+  problem.M = A;
+  problem.cones = {{.normal_row = 0, .dimension = 3, .coefficient = 0.5},
+                   {.normal_row = 3, .dimension = 3, .coefficient = 0.5}};
+  const Vector start{{0.5, 0.25, 0.0, 0.5, -0.25, 0.0}};
+  for (const double slip : {1e-13, 1e-12}) {
+    problem.q = Vector{{-2.0 - 1e-9, -0.1 * slip, -slip, -2.0 - 1e-9, -0.1 * slip, -slip}};
+    const Result result = solve(problem, {}, &start);
+    EXPECT_EQ(result.status, Status::kSolved);
+    EXPECT_EQ(result.statistics.factorizations, 1);
+    EXPECT_LT(result.w.cwiseAbs().maxCoeff(), 1e-15);
+    EXPECT_LT((result.z - start).cwiseAbs().maxCoeff(), 1e-8) << result.z.transpose();
+  }
+}
+
+TEST(Sticking, ASolvedStartIsKeptWhereItsSetIsMuchWorse) {
+  // A bar on two supports that the push lifts off the second: with both closed it must pull.
+  FactoredMatrix A;
+  A.mass.add_inverse(Matrix{{1.0, 0.0}, {0.0, 0.1}});  // M = [1.1 0.9; 0.9 1.1]
+  for (const double arm : {-1.0, 1.0}) {
+    A.add_row();
+    A.add_entry(0, Vector{{1.0, arm}});
+  }
+  Problem problem;
+  problem.M = A;
+  problem.q = Vector{{-1.1, -0.7}};  // z = (1, 0), w = (0, 0.2)
+  const Vector start{{1.0, 0.01}};
+  StickingSettings settings;
+  settings.tolerance = 0.05;
+  const Result kept = solve(problem, settings, &start);
+  EXPECT_EQ(kept.status, Status::kSolved);
+  EXPECT_EQ(kept.z, start);
+  EXPECT_EQ(kept.statistics.factorizations, 1);
+  settings.tolerance = 1e-8;  // a start that is not solved gets the sets it takes
+  const Result solved = solve(problem, settings, &start);
+  EXPECT_EQ(solved.status, Status::kSolved);
+  EXPECT_LT((solved.z - Vector{{1.0, 0.0}}).norm(), 1e-14);
+  EXPECT_EQ(solved.statistics.factorizations, 2);
+}
+
 TEST(Sticking, FreeRowsAndRowsWithoutFriction) {
   // Three unit masses in a row along x: a contact pushes the first, a free row ties it to the
   // second, an LCP row holds the second against the third.
