@@ -16,6 +16,10 @@ constexpr double kSmallestAlpha = 1e-12;
 constexpr double kLargestAlpha = 1e3;
 constexpr double kFinestTolerance = 1e-15;
 constexpr int kFewSteps = 12;  // of an inner iteration that went well
+constexpr double kFall = 0.1;  // of alpha after one of few steps
+constexpr double kSlowFall = 0.5;
+constexpr double kRise = 3.0;
+constexpr double kStrictness = 1e-2;  // of an inner iteration, of the error before it
 
 }  // namespace
 
@@ -31,6 +35,7 @@ class AlartCurnier::Workspace {
   };
   Inner newton(const AlartCurnierSettings& settings, double alpha, double tolerance);
   double evaluate(double alpha, const Vector& x);
+  double violation();
   [[nodiscard]] bool solved() const {
     return is_solved(judge(best_.certificate(), tolerance_, Status::kStalled));
   }
@@ -47,10 +52,10 @@ class AlartCurnier::Workspace {
   int* factorizations_ = nullptr;
   int most_steps_ = 0;
   double tolerance_ = 0.0;
-  double rho_ = 1.0;
+  double rho_ = 1.0;  // of the line search
   ScaledGroups groups_;
   BestIterate best_;
-  Vector x_, anchor_, trial_, u_, F_, dx_, z_, least_x_;
+  Vector x_, anchor_, trial_, u_, F_, natural_, dx_, z_, least_x_;
   std::vector<AlartCurnierFunction::Block> A_, B_;
   std::vector<AlartCurnierFunction::Coupling> couplings_;
 };
@@ -60,7 +65,7 @@ double AlartCurnier::Workspace::error_of(const Vector& x) {
   return BestIterate::merit(best_.offer(z_));
 }
 
-/// F_ at x. @return |F|.
+/// F_ at x, with u_. @return |F|.
 double AlartCurnier::Workspace::evaluate(double alpha, const Vector& x) {
   groups_.multiply(x, u_);
   u_ += groups_.b() + alpha * (x - anchor_);
@@ -68,19 +73,30 @@ double AlartCurnier::Workspace::evaluate(double alpha, const Vector& x) {
   return F_.norm();
 }
 
+/// The largest entry of F at x_ and u_ for rho = 1, whatever that of the line search.
+double AlartCurnier::Workspace::violation() {
+  groups_.function().evaluate(x_, u_, 1.0, natural_);
+  return natural_.cwiseAbs().maxCoeff();
+}
+
 /// Newton from x_, whose u_ and F_ it leaves at the best point it saw.
+///
+/// A step along what only alpha holds (redundant contacts) moves x by 1/alpha of what it moves u
+/// by, so that |F| for rho = 1 sees x alone and lets almost no full step pass. rho = alpha^-1/2 is
+/// half way between the scales of the two kinds of motion.
 AlartCurnier::Workspace::Inner AlartCurnier::Workspace::newton(const AlartCurnierSettings& settings,
                                                                double alpha, double tolerance) {
   constexpr double kSmallestStep = 0.1;
   constexpr double kArmijo = 1e-4;
-  std::array<double, 12> recent{};
+  std::array<double, 4> recent{};
+  rho_ = 1.0 / std::sqrt(alpha);
   double size = evaluate(alpha, x_);
   recent.fill(size);
   double least = size;
   least_x_ = x_;
   int step = 0;
   for (; step < settings.inner_steps && !exhausted(); ++step) {
-    if (F_.cwiseAbs().maxCoeff() <= tolerance) {
+    if (violation() <= tolerance) {
       return {true, step};
     }
     groups_.function().differentiate(x_, u_, rho_, A_, B_, couplings_);
@@ -109,7 +125,7 @@ AlartCurnier::Workspace::Inner AlartCurnier::Workspace::newton(const AlartCurnie
   }
   x_ = least_x_;
   evaluate(alpha, x_);
-  return {F_.cwiseAbs().maxCoeff() <= tolerance, step};
+  return {violation() <= tolerance, step};
 }
 
 Status AlartCurnier::Workspace::solve(const Problem& problem, const AlartCurnierSettings& settings,
@@ -129,13 +145,12 @@ Status AlartCurnier::Workspace::solve(const Problem& problem, const AlartCurnier
   }
   double alpha = settings.proximal;
   double error = error_of(x_);
-  double strictness = 1e-3;
+  double strictness = kStrictness;
   int stalled = 0;
-  rho_ = 1.0;
   while (!solved() && !exhausted()) {
     anchor_ = x_;
-    const double tolerance =
-        std::max(strictness < 1e-3 ? kFinestTolerance : 1e-13, strictness * std::min(1.0, error));
+    const double tolerance = std::max(strictness < kStrictness ? kFinestTolerance : 1e-13,
+                                      strictness * std::min(1.0, error));
     const Inner inner = newton(settings, alpha, tolerance);
     if (++result.statistics.iterations >= most_steps_) {
       most_steps_ = 0;  // a proximal step counts at least as one
@@ -148,9 +163,9 @@ Status AlartCurnier::Workspace::solve(const Problem& problem, const AlartCurnier
       strictness *= 1e-3;
     }
     const double after = error_of(x_);
-    const bool good = inner.converged || F_.cwiseAbs().maxCoeff() <= std::max(1e-12, 0.1 * error);
+    const bool good = inner.converged || violation() <= std::max(1e-12, 0.1 * error);
     if (good) {
-      alpha = std::max(alpha * (inner.steps < kFewSteps ? 0.3 : 0.5), kSmallestAlpha);
+      alpha = std::max(alpha * (inner.steps < kFewSteps ? kFall : kSlowFall), kSmallestAlpha);
       error = after;
       stalled = 0;
       continue;
@@ -163,7 +178,7 @@ Status AlartCurnier::Workspace::solve(const Problem& problem, const AlartCurnier
       finish(result);
       return Status::kStalled;
     }
-    alpha = std::min(3.0 * alpha, kLargestAlpha);
+    alpha = std::min(kRise * alpha, kLargestAlpha);
   }
   finish(result);
   return deadline.passed() ? Status::kTimeLimit

@@ -15,7 +15,7 @@ struct AlartCurnierSettings : SolverSettings {
   /// outer iteration slow. It follows the inner iterations from there.
   double proximal = 0.1;
   /// Newton steps of one proximal problem, >= 1, before alpha is raised.
-  int inner_steps = 70;
+  int inner_steps = 30;
 
   /// @throws std::invalid_argument that names the setting, its value and the bound.
   void validate() const;
@@ -32,7 +32,8 @@ struct AlartCurnierSettings : SolverSettings {
 /// each found by a semismooth Newton method with a nonmonotone line search on |F| (Alart, Curnier
 /// 1991; proximal form: Acary, Bremond, Huber, On solving contact problems with Coulomb friction,
 /// 2018, section 5.2). Redundant contacts, for which plain Newton has a singular matrix, only make
-/// alpha matter. alpha falls while the inner iterations are few and rises when they fail.
+/// alpha matter; the line search weighs u by rho = alpha^-1/2. alpha falls while the inner
+/// iterations are few and rises when they fail.
 ///
 /// No solution is promised: Coulomb's problem may have none, and the proximal iteration is known to
 /// converge only where W is monotone on the cones. Statuses beside solved: kIterationLimit,
