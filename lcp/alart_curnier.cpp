@@ -20,6 +20,10 @@ constexpr double kFall = 0.1;  // of alpha after one of few steps
 constexpr double kSlowFall = 0.5;
 constexpr double kRise = 3.0;
 constexpr double kStrictness = 1e-2;  // of an inner iteration, of the error before it
+// What a proximal step must leave of the best error to help, and how many may not before a start
+// is given up for 0.
+constexpr double kHelps = 0.9;
+constexpr int kPatience = 20;
 
 }  // namespace
 
@@ -33,7 +37,7 @@ class AlartCurnier::Workspace {
     bool converged;
     int steps;
   };
-  Inner newton(const AlartCurnierSettings& settings, double alpha, double tolerance);
+  Inner newton(const AlartCurnierSettings& settings, double alpha, double error, double tolerance);
   double evaluate(double alpha, const Vector& x);
   double violation();
   [[nodiscard]] bool solved() const {
@@ -83,13 +87,15 @@ double AlartCurnier::Workspace::violation() {
 ///
 /// A step along what only alpha holds (redundant contacts) moves x by 1/alpha of what it moves u
 /// by, so that |F| for rho = 1 sees x alone and lets almost no full step pass. rho = alpha^-1/2 is
-/// half way between the scales of the two kinds of motion.
+/// half way between the scales of the two kinds of motion; from a start with an error larger than
+/// alpha it would take what pushes for what has come apart.
 AlartCurnier::Workspace::Inner AlartCurnier::Workspace::newton(const AlartCurnierSettings& settings,
-                                                               double alpha, double tolerance) {
+                                                               double alpha, double error,
+                                                               double tolerance) {
   constexpr double kSmallestStep = 0.1;
   constexpr double kArmijo = 1e-4;
   std::array<double, 4> recent{};
-  rho_ = 1.0 / std::sqrt(alpha);
+  rho_ = 1.0 / std::sqrt(std::max(alpha, std::min(1.0, error)));
   double size = evaluate(alpha, x_);
   recent.fill(size);
   double least = size;
@@ -147,11 +153,14 @@ Status AlartCurnier::Workspace::solve(const Problem& problem, const AlartCurnier
   double error = error_of(x_);
   double strictness = kStrictness;
   int stalled = 0;
+  double least = error;
+  int without = 0;
+  bool has_start = !x_.isZero(0.0);
   while (!solved() && !exhausted()) {
     anchor_ = x_;
     const double tolerance = std::max(strictness < kStrictness ? kFinestTolerance : 1e-13,
                                       strictness * std::min(1.0, error));
-    const Inner inner = newton(settings, alpha, tolerance);
+    const Inner inner = newton(settings, alpha, error, tolerance);
     if (++result.statistics.iterations >= most_steps_) {
       most_steps_ = 0;  // a proximal step counts at least as one
     }
@@ -163,6 +172,17 @@ Status AlartCurnier::Workspace::solve(const Problem& problem, const AlartCurnier
       strictness *= 1e-3;
     }
     const double after = error_of(x_);
+    without = after < kHelps * least ? 0 : without + 1;
+    least = std::min(after, least);
+    if (has_start && without > kPatience) {
+      has_start = false;
+      without = 0;
+      x_.setZero();
+      error = error_of(x_);
+      alpha = settings.proximal;
+      strictness = kStrictness;
+      continue;
+    }
     const bool good = inner.converged || violation() <= std::max(1e-12, 0.1 * error);
     if (good) {
       alpha = std::max(alpha * (inner.steps < kFewSteps ? kFall : kSlowFall), kSmallestAlpha);

@@ -36,8 +36,10 @@ void ConeBarrier::start(const Group& group, const double* b, double margin, bool
   const Vector3 in = -out;
   project_on_cone(1.0, 3, out.data(), v_.data());
   project_on_cone(1.0, 3, in.data(), x_.data());
-  v_[0] += margin;
-  x_[0] += margin;
+  // Where mu > 1 these coordinates are not the caller's: the margin is that of x_N and u_N.
+  const double stretch = std::max(group.mu, 1.0);
+  v_[0] += margin / stretch;
+  x_[0] += margin * stretch;
 }
 
 void ConeBarrier::start_row(double b, double margin) {

@@ -17,8 +17,9 @@ class ConeBarrier {
   using Block = AlartCurnierFunction::Block;
   using Vector3 = Eigen::Vector3d;
 
-  /// x and v (or slacks and multipliers) inside by at least `margin`, near the solution of the
-  /// group alone for u = x + b. @param shift whether the law is Coulomb's
+  /// x and v (or slacks and multipliers) inside by at least `margin` (of a cone with mu > 1, of x_N
+  /// and u_N), near the solution of the group alone for u = x + b. @param shift whether the law is
+  /// Coulomb's
   void start(const Group& group, const double* b, double margin, bool shift);
 
   /// The number of its complementary products: 0, 1 or 2.

@@ -38,6 +38,7 @@ class ConeInteriorPoint::Workspace {
   ScaledGroups groups_;
   BestIterate best_;
   int products_ = 0;
+  double left_ = 1.0;  // of what the start missed of the linear equations
   std::vector<ConeBarrier> barriers_;
   std::vector<AlartCurnierFunction::Block> A_, B_;
   std::vector<AlartCurnierFunction::Coupling> no_couplings_;
@@ -47,7 +48,7 @@ class ConeInteriorPoint::Workspace {
 };
 
 void ConeInteriorPoint::Workspace::start(const Problem& problem) {
-  constexpr double kMargin = 0.1;  // of |b|_inf = 1
+  constexpr double kMargin = 1.0;  // of |b|_inf = 1; less costs piles short steps
   groups_.set(problem);
   const auto& groups = groups_.function().groups();
   barriers_.resize(groups.size());
@@ -122,6 +123,7 @@ bool ConeInteriorPoint::Workspace::step(double tau) {
     }
   }
   const double length = std::min(1.0, settings_.step_fraction * longest_step());
+  left_ *= 1.0 - length;
   for (ConeBarrier& barrier : barriers_) {
     barrier.move(length);
   }
@@ -130,10 +132,15 @@ bool ConeInteriorPoint::Workspace::step(double tau) {
 
 Status ConeInteriorPoint::Workspace::follow_path(const Deadline& deadline, Statistics& statistics) {
   constexpr int kMostWithoutProgress = 8;
+  constexpr double kProgress = 0.9;
+  // While more than this of the start's error is left, the gap may grow: loads build up.
+  constexpr double kMuchLeft = 0.01;
   const int most = settings_.max_iterations >= 0 ? settings_.max_iterations
                                                  : ConeInteriorPointSettings::kDefaultIterations;
   const auto& groups = groups_.function().groups();
   double least_tau = std::numeric_limits<double>::infinity();
+  double least_left = std::numeric_limits<double>::infinity();
+  left_ = 1.0;
   for (int without_progress = 0;; ++statistics.iterations) {
     for (std::size_t g = 0; g < groups.size(); ++g) {
       barriers_[g].get(x_.data() + groups[g].first);
@@ -141,8 +148,10 @@ Status ConeInteriorPoint::Workspace::follow_path(const Deadline& deadline, Stati
     groups_.to_caller(x_, z_);
     best_.offer(z_);
     const double tau = products_ > 0 ? gap_after(0.0) / products_ : 0.0;
-    without_progress = tau < 0.9 * least_tau ? 0 : without_progress + 1;
+    const bool nearer = left_ > kMuchLeft && left_ < kProgress * least_left;
+    without_progress = nearer || tau < kProgress * least_tau ? 0 : without_progress + 1;
     least_tau = std::min(tau, least_tau);
+    least_left = std::min(left_, least_left);
     if (solved() || without_progress > kMostWithoutProgress) {
       return Status::kStalled;
     }

@@ -20,8 +20,10 @@ constexpr double kG = 9.81;
 
 CoulombReport forces_of(const Scene& scene, const Vec3& gravity, std::vector<bool> slides) {
   CoulombReport report;
+  RestingSettings settings;
+  settings.friction_lcp.tolerance = 1e-12;
   coulomb_forces(scene.bodies, scene.state, scene.contacts, slides,
-                 gravity_loads(scene.bodies, gravity), {}, {}, report);
+                 gravity_loads(scene.bodies, gravity), {}, settings, report);
   return report;
 }
 
