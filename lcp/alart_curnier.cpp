@@ -24,6 +24,7 @@ constexpr double kStrictness = 1e-2;  // of an inner iteration, of the error bef
 // is given up for 0.
 constexpr double kHelps = 0.9;
 constexpr int kPatience = 20;
+constexpr int kMostStalled = 3;  // iterations with the largest alpha that failed
 
 }  // namespace
 
@@ -172,14 +173,15 @@ Status AlartCurnier::Workspace::solve(const Problem& problem, const AlartCurnier
       strictness *= 1e-3;
     }
     const double after = error_of(x_);
-    without = after < kHelps * least ? 0 : without + 1;
-    least = std::min(after, least);
-    if (has_start && without > kPatience) {
+    const bool helped = after < kHelps * least;
+    least = helped ? after : least;
+    without = helped ? 0 : without + 1;
+    if (has_start && (without >= kPatience || stalled > kMostStalled)) {
       has_start = false;
-      without = 0;
+      without = stalled = 0;
       x_.setZero();
       error = error_of(x_);
-      alpha = settings.proximal;
+      alpha = std::max(settings.proximal, AlartCurnierSettings().proximal);
       strictness = kStrictness;
       continue;
     }
@@ -194,7 +196,7 @@ Status AlartCurnier::Workspace::solve(const Problem& problem, const AlartCurnier
       x_ = anchor_;
     }
     error = std::min(error, after);
-    if (alpha >= kLargestAlpha && ++stalled > 3) {
+    if (alpha >= kLargestAlpha && ++stalled > kMostStalled && !has_start) {
       finish(result);
       return Status::kStalled;
     }

@@ -32,9 +32,10 @@ struct AlartCurnierSettings : SolverSettings {
 /// each found by a semismooth Newton method with a nonmonotone line search on |F| (Alart, Curnier
 /// 1991; proximal form: Acary, Bremond, Huber, On solving contact problems with Coulomb friction,
 /// 2018, section 5.2). Redundant contacts, for which plain Newton has a singular matrix, only make
-/// alpha matter; the line search weighs u by rho = max(alpha, error)^-1/2. alpha falls while the
-/// inner iterations are few and rises when they fail. A start from which 20 proximal steps bring
-/// nothing is given up for 0: forces that strain against each other, once there, stay.
+/// alpha matter; the line search weighs u by rho = max(alpha, min(1, error))^-1/2. alpha falls
+/// while the inner iterations are few and rises when they fail. A start from which 20 proximal
+/// steps bring less than a tenth, or the largest alpha fails, is given up for 0 (once): forces that
+/// strain against each other, once there, stay.
 ///
 /// No solution is promised: Coulomb's problem may have none, and the proximal iteration is known to
 /// converge only where W is monotone on the cones. Statuses beside solved: kIterationLimit,

@@ -42,16 +42,16 @@ struct AutoSettings : SolverSettings {
 /// digits. The order is by factorisations counted (real problems and generated families, to 1e-8):
 ///
 /// - symmetric M given whole, 9 real LCPs with n > 100: block-pivoting 5 to 18, interior-point 4
-///   to 25, alart-curnier 7 to 79;
-/// - not symmetric, 7 circuits: interior-point 2 to 32, alart-curnier 4 to 88 and for the largest
-///   (n = 221) not within 3000; LCPs of pyramid friction up to 1000 rows: interior-point all,
-///   alart-curnier those of towers;
+///   to 25, alart-curnier 5 to 37;
+/// - not symmetric, 7 circuits: interior-point 2 to 32, alart-curnier 4 to 222; LCPs of pyramid
+///   friction up to 1000 rows: interior-point all, alart-curnier those of towers;
 /// - factored M: interior-point 2 to 24; block-pivoting 7 to 83 and with mass ratios of 1e6 up to
 ///   2205, so it is not tried;
-/// - associated law, M given whole, n > 600: cone-interior-point 20 to 35 a problem, alart-curnier
-///   13 to 70, but the hardest (RockPile) 31 against more than 54. Coulomb's: cone-interior-point
-///   18 to 33, alart-curnier 10 to 112, but smaller ones, as open contacts drop out of its systems:
-///   its time is less, and cone-interior-point does not end on RockPile. So it is not tried there.
+/// - associated law, M given whole, 8 real problems with n > 600: cone-interior-point 19 to 43,
+///   alart-curnier 12 to 31, but of the two hardest 92 and 372. Coulomb's: alart-curnier 9 to 154
+///   (RockPile 809), but smaller ones, as open contacts drop out of its systems;
+///   cone-interior-point 20 to 165, and it does not end on RockPile nor on the largest. So it is
+///   not tried there.
 ///
 /// What another solver solved to rounding only, sticking is given to find the last digits of.
 /// A proof that there is no solution ends it. Where there is none below a Z so far off that M,

@@ -133,7 +133,8 @@ bool ConeInteriorPoint::Workspace::step(double tau) {
 Status ConeInteriorPoint::Workspace::follow_path(const Deadline& deadline, Statistics& statistics) {
   constexpr int kMostWithoutProgress = 8;
   constexpr double kProgress = 0.9;
-  // While more than this of the start's error is left, the gap may grow: loads build up.
+  // While more than this of the start's error is left (but for Coulomb's shift, which is not
+  // linear), the gap may grow: loads build up.
   constexpr double kMuchLeft = 0.01;
   const int most = settings_.max_iterations >= 0 ? settings_.max_iterations
                                                  : ConeInteriorPointSettings::kDefaultIterations;
@@ -151,7 +152,7 @@ Status ConeInteriorPoint::Workspace::follow_path(const Deadline& deadline, Stati
     const bool nearer = left_ > kMuchLeft && left_ < kProgress * least_left;
     without_progress = nearer || tau < kProgress * least_tau ? 0 : without_progress + 1;
     least_tau = std::min(tau, least_tau);
-    least_left = std::min(left_, least_left);
+    least_left = nearer ? left_ : least_left;
     if (solved() || without_progress > kMostWithoutProgress) {
       return Status::kStalled;
     }
@@ -212,7 +213,8 @@ Status ConeInteriorPoint::Workspace::solve(const Problem& problem, const Vector*
     ending = follow_path(deadline, result.statistics);
     result.statistics.factor_bytes = groups_.factor_bytes();
   }
-  const bool limited = ending == Status::kIterationLimit || ending == Status::kTimeLimit;
+  const bool limited = ending == Status::kTimeLimit ||
+                       (ending == Status::kIterationLimit && settings_.max_iterations >= 0);
   if (!solved() && !limited && settings_.polish_steps > 0) {
     ending = polish(problem, deadline, result.statistics);
   }

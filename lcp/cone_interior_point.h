@@ -39,14 +39,15 @@ struct ConeInteriorPointSettings : SolverSettings {
 /// (cone_barrier.h).
 ///
 /// Near tau = 0 the Newton matrix spans more digits than a double has. Where the path gets on no
-/// longer, AlartCurnier goes on from its best iterate with a small proximal weight.
+/// longer, or its own number of steps is used up, AlartCurnier goes on from its best iterate with a
+/// small proximal weight.
 ///
 /// Made for symmetric positive semidefinite M and the associated law, where redundant contacts do
 /// no harm. For Coulomb's law it is a fast attempt that may stall: the path can end at a fold, or
 /// at no solution. Nothing is proven of a problem without one.
 ///
 /// Takes all rows of problem.h but coupled limits. Statuses beside solved: kIterationLimit (the
-/// path's steps, or the polish's, are used up), kTimeLimit, kStalled (neither path nor polish gets
+/// caller's steps, or the polish's, are used up), kTimeLimit, kStalled (neither path nor polish gets
 /// on), kNumericalBreakdown (a singular system, with no polish to follow); z is the best iterate by
 /// certificate. A warm start is tried as an answer, and is where the polish starts if the path
 /// finds nothing better; the path always starts cold. Cost: one sparse LU a step, in body space of

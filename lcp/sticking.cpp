@@ -29,7 +29,8 @@ constexpr int kFirstFrictionRounds = 4;
 constexpr double kRounding = 1e-14;
 // What a start that is solved must meet, of the tolerance, to be left as it is; else it is given
 // this many sets, the second where the first is not much worse than the start. In a scene at rest
-// the error of one step is in the q of the next, where it adds up.
+// the error of one step is in the q of the next, where it adds up. A slip as small as that has no
+// direction.
 constexpr double kAsGood = 0.01;
 constexpr int kSetsToPolish = 2;
 constexpr double kMuchWorse = 10.0;
@@ -408,19 +409,20 @@ Status Sticking::Workspace::solve(const Problem& problem, const StickingSettings
     without = residual < 0.9 * least ? 0 : without + 1;
     least = std::min(residual, least);
     const bool solved = residual <= kBelow * settings.tolerance;
-    worse = residual > kMuchWorse * start ? worse + 1 : 0;
-    if (worse == (polishes ? 1 : kWorsePatience)) {
-      ending = Status::kStalled;
+    worse = warm_start != nullptr && residual > kMuchWorse * start ? worse + 1 : 0;
+    const bool is_far = worse == (polishes ? 1 : kWorsePatience);
+    ending = Status::kStalled;
+    if (solved || without > kPatience) {
       break;
     }
-    if (!solved && without <= kPatience && correct() > 0) {
-      continue;
-    }
-    ending = Status::kStalled;
-    if (!solved && without <= kPatience) {  // the right set, but for rounding
+    if (correct() == 0) {  // the right set, but for rounding
       refine(kBelow * settings.tolerance);
+      break;
     }
-    break;
+    if (is_far) {
+      break;
+    }
+    ending = Status::kIterationLimit;
   }
   result.statistics.factorizations = factorizations_;
   result.statistics.factor_bytes = static_cast<std::int64_t>(cholesky_->counts().bytes);

@@ -21,7 +21,8 @@ struct StickingSettings : SolverSettings {
 /// the linear system is solved and contacts whose wish is not granted change sides, until none
 /// does. That solves Coulomb's problem exactly; where nothing slides it solves the associated one
 /// too, and the system is symmetric: one sparse Cholesky in body space a set. The friction of
-/// sliding contacts is a fixed point around it, with the same factor.
+/// sliding contacts is a fixed point around it, with the same factor; a slip below a hundredth of
+/// the tolerance (times |q|) has no direction of its own, and friction keeps the one it has.
 ///
 /// Where contacts are redundant the linear system has a plane of solutions. From the one next to
 /// the start it is searched for one inside the cones by reflections (Motzkin, Schoenberg, The
@@ -32,7 +33,8 @@ struct StickingSettings : SolverSettings {
 ///
 /// A warm start far below the tolerance is the answer, without a factorisation: what a stack at
 /// rest costs. Made for resting and sticking contacts; with many that slide, or from a bad start,
-/// the sets may cycle, and it gives up soon: an attempt before a solver that does not (AutoSolver).
+/// the sets may cycle, and it gives up soon, from a start after three sets that are ten times worse
+/// than it (one, if the start is solved): an attempt before a solver that does not (AutoSolver).
 ///
 /// Takes factored M, cones, LCP rows and free rows. Endings beside solved: kIterationLimit,
 /// kTimeLimit, kStalled, kNumericalBreakdown if a factorisation failed; z is the best iterate.

@@ -27,7 +27,7 @@ constexpr int kCorrectionSets = 4;
 constexpr double kRowsOfAUnit = 1000.0;
 // However much a budget allows: a solver that has not ended by then does not.
 constexpr double kMostIterations = 1e4;
-// Impulses that differ by less, of the largest, are the same.
+// Impulses that differ by less, of their size, are the same.
 constexpr double kSame = 1e-12;
 constexpr double kLeastSeconds = 1e-9;  // a solver's limit is > 0
 
@@ -59,9 +59,9 @@ double spent(std::string_view name, const lcp::Result& result) {
   return std::max(steps, 0) * unit_cost(name, result.z.size());
 }
 
-/// By more than rounding.
+/// In any row by more than rounding.
 bool differ(const lcp::Vector& z, const lcp::Vector& start) {
-  return !(z - start).isZero(kSame * z.lpNorm<Eigen::Infinity>());
+  return ((z - start).array().abs() > kSame * z.array().abs()).any();
 }
 
 }  // namespace
@@ -113,6 +113,7 @@ void IslandSolver::solve(std::span<const JointRow> joints, const StepMemory& mem
   after_correction_ = recalled.corrected;
   if (warm) {
     recall_joints(joints, memory.joints, island.start);
+    step_start_ = island.start;
   }
   if (settings_.accuracy) {
     solve_by_dial(problem, budget, warm, island);
@@ -266,7 +267,7 @@ void IslandSolver::solve_by_dial(const lcp::Problem& problem, const StepBudget& 
   island.corrected = is_warm && lcp::is_solved(result.status) && !attempts_.empty() &&
                      attempts_.back().solver == "sticking" &&
                      attempts_.back().statistics.factorizations > 0 &&
-                     differ(result.z, island.start);
+                     differ(result.z, step_start_);
   std::swap(result.attempts, attempts_);
 }
 

@@ -41,7 +41,8 @@ struct IslandAnswer {
   lcp::Vector start;  ///< of the warm start
   lcp::Result result;
   double work = 0.0;  ///< what was spent, in units of StepBudget::work
-  /// Of the dial: whether a start that nearly was the answer was made so (by `sticking`).
+  /// Of the dial: whether a start that nearly was the answer was made so (by `sticking`), its
+  /// impulses changed.
   bool corrected = false;
   double assemble_seconds = 0.0;  ///< wall time of making `velocity`, s
 };
@@ -111,6 +112,7 @@ class IslandSolver {
   lcp::BestIterate start_;
   std::vector<Try> chain_;
   bool after_correction_ = false;  // the island's start
+  lcp::Vector step_start_;         // where warm: of the step, before any attempt
   lcp::Result another_;            // of an attempt that is not an island's first
   std::vector<lcp::Attempt> attempts_;
 };

@@ -218,11 +218,13 @@ TEST(FrictionForms, TheConeInteriorPointGoesOnWhileLoadsBuildUp) {
        {Case{{.family = "tower4", .size = 16, .mass_ratio = 1e3}, 60},
         Case{{.family = "tower4", .size = 16, .mass_ratio = 1e3, .at_rest = true}, 25},
         Case{{.family = "tower8", .size = 8, .mass_ratio = 1e3, .at_rest = true}, 18}}) {
+    SCOPED_TRACE(std::string(one.spec.family));
     lcp::Result result;
     lcp::make_solver("cone-interior-point")
         ->solve(make_cones(make_family_scene(one.spec), 0.5), result);
     EXPECT_EQ(result.status, lcp::Status::kSolved);
-    EXPECT_LE(result.statistics.factorizations, one.most);
+    EXPECT_LE(result.statistics.iterations, one.most);
+    EXPECT_LE(result.statistics.factorizations, result.statistics.iterations + 5);  // no polish
   }
 }
 
