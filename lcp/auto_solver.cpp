@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Index kSmall = 100;                 // rows up to which dense pivoting is the fastest
+constexpr Index kSmallCold = 48;              // the same, of a factored M without a start
 constexpr Index kStructuredLemkeRows = 2000;  // a pivot costs up to n^2 / 2
 constexpr Index kLemkeRows = 1000;            // the same, with larger constants
 constexpr double kMassRatioForSweeps = 1e3;   // above it sweeps stall
@@ -70,6 +71,9 @@ void AutoSolver::choose(const Problem& problem) {
   }
   const bool symmetric = SymmetricLcp::asymmetry(problem).size <= SymmetricLcp::kMostAsymmetry;
   if (symmetric && n <= kSmall) {
+    if (factored && !has_start_ && n > kSmallCold) {
+      chain_.push_back({"interior-point", "factored, from no start"});
+    }
     chain_.push_back({"dantzig", "symmetric and small", -1, true});
     chain_.push_back({"structured-lemke", "symmetric and small", -1, true});
   } else if (factored) {

@@ -43,6 +43,26 @@ TEST(AutoSolver, SolvesASmallSymmetricProblemWithDantzigAlone) {
   EXPECT_EQ(result.w, Vector::Zero(2));
 }
 
+TEST(AutoSolver, TakesMiddlingFactoredProblemsFromTheInsideUnlessItHasAStart) {
+  const Result small = solve(family("tower4", 12));
+  EXPECT_EQ(small.solver, "auto: dantzig");
+  const Problem problem = family("tower4", 16);
+  ASSERT_EQ(problem.size(), 64);
+  const Result cold = solve(problem);
+  EXPECT_EQ(cold.status, Status::kSolved);
+  EXPECT_EQ(cold.solver, "auto: interior-point");
+  Result warm;
+  AutoSolver().solve(problem, warm, &cold.z);
+  EXPECT_EQ(warm.status, Status::kSolved);
+  EXPECT_EQ(warm.solver, "auto: dantzig");
+  // A row of zeros whose w is -1 whatever z: dantzig, behind it, proves that there is no answer.
+  Problem impossible = problem;
+  std::get<FactoredMatrix>(impossible.M).add_row();
+  impossible.q.conservativeResize(65);
+  impossible.q[64] = -1.0;
+  EXPECT_EQ(solve(impossible).status, Status::kInfeasible);
+}
+
 TEST(AutoSolver, CertificateIsThatOfItsZ) {
   for (const char* name : {"tower4", "spheres"}) {
     const Problem problem = family(name, name[0] == 't' ? 8 : 40);
