@@ -165,42 +165,41 @@ Status AlartCurnier::Workspace::solve(const Problem& problem, const AlartCurnier
     if (++result.statistics.iterations >= most_steps_) {
       most_steps_ = 0;  // a proximal step counts at least as one
     }
+    bool is_stuck = false;
     if (inner.steps == 0 && inner.converged) {  // F's units hide an error that the certificate sees
-      if (tolerance <= kFinestTolerance) {
-        finish(result);
-        return Status::kStalled;
-      }
+      is_stuck = tolerance <= kFinestTolerance;
       strictness *= 1e-3;
     }
     const double after = error_of(x_);
     const bool helped = after < kHelps * least;
     least = helped ? after : least;
     without = helped ? 0 : without + 1;
-    if (has_start && (without >= kPatience || stalled > kMostStalled)) {
-      has_start = false;
-      without = stalled = 0;
-      x_.setZero();
-      error = error_of(x_);
-      alpha = std::max(settings.proximal, AlartCurnierSettings().proximal);
-      strictness = kStrictness;
-      continue;
-    }
-    const bool good = inner.converged || violation() <= std::max(1e-12, 0.1 * error);
-    if (good) {
+    is_stuck = is_stuck || (has_start && without >= kPatience);
+    if (!is_stuck && (inner.converged || violation() <= std::max(1e-12, 0.1 * error))) {
       alpha = std::max(alpha * (inner.steps < kFewSteps ? kFall : kSlowFall), kSmallestAlpha);
       error = after;
       stalled = 0;
       continue;
     }
-    if (after > error) {
-      x_ = anchor_;
+    is_stuck = is_stuck || (alpha >= kLargestAlpha && ++stalled > kMostStalled);
+    if (!is_stuck) {
+      if (after > error) {
+        x_ = anchor_;
+      }
+      error = std::min(error, after);
+      alpha = std::min(kRise * alpha, kLargestAlpha);
+      continue;
     }
-    error = std::min(error, after);
-    if (alpha >= kLargestAlpha && ++stalled > kMostStalled && !has_start) {
+    if (!has_start) {
       finish(result);
       return Status::kStalled;
     }
-    alpha = std::min(kRise * alpha, kLargestAlpha);
+    has_start = false;
+    x_.setZero();
+    error = least = error_of(x_);
+    alpha = std::max(settings.proximal, AlartCurnierSettings().proximal);
+    strictness = kStrictness;
+    stalled = 0;
   }
   finish(result);
   return deadline.passed() ? Status::kTimeLimit

@@ -34,14 +34,15 @@ struct AlartCurnierSettings : SolverSettings {
 /// 2018, section 5.2). Redundant contacts, for which plain Newton has a singular matrix, only make
 /// alpha matter; the line search weighs u by rho = max(alpha, min(1, error))^-1/2. alpha falls
 /// while the inner iterations are few and rises when they fail. A start from which 20 proximal
-/// steps bring less than a tenth, or the largest alpha fails, is given up for 0 (once): forces that
-/// strain against each other, once there, stay.
+/// steps bring less than a tenth, or that the largest alpha or the finest tolerance does not help,
+/// is given up for 0 (once): forces that strain against each other, once there, stay.
 ///
 /// No solution is promised: Coulomb's problem may have none, and the proximal iteration is known to
 /// converge only where W is monotone on the cones. Statuses beside solved: kIterationLimit,
 /// kTimeLimit, kStalled (alpha at its largest and no progress); z is the best iterate by
 /// certificate.
-/// Cost: one sparse LU a Newton step (dense up to NewtonSystem::kDenseRows active rows);
+/// Cost: one sparse LU a Newton step (dense up to NewtonSystem::kDenseRows active rows, or
+/// BodyNewtonSystem::kDenseColumns degrees of freedom);
 /// statistics: iterations are proximal steps, factorizations Newton steps, factor_bytes what the
 /// sparse LU held, which is all that a problem of a size it has seen before allocates.
 class AlartCurnier : public Solver {

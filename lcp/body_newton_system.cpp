@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -18,7 +19,7 @@ void BodyNewtonSystem::set(const WhitenedRows& rows, const AlartCurnierFunction&
   find_pairs();
   order_bodies();
   set_pattern();
-  if (rows.degrees_of_freedom() > 0) {
+  if (!is_dense()) {
     lu_.keep_order();
     lu_.analyse(matrix());
   }
@@ -45,7 +46,6 @@ void BodyNewtonSystem::find_pairs() {
 
 /// Gives every body that rows move its rank, and the pairs their ranks for their numbers.
 void BodyNewtonSystem::order_bodies() {
-  const BackEndScope scope;  // orders allocate, as the factorisation does
   graph_.start.assign(1, 0);
   graph_.neighbours.clear();
   graph_.weight.clear();
@@ -66,7 +66,13 @@ void BodyNewtonSystem::order_bodies() {
     graph_.start.push_back(static_cast<int>(graph_.neighbours.size()));
     graph_.weight.push_back(bodies_[b].dimension);
   }
-  body_at_ = least_fill_.find(graph_).order;
+  if (is_dense()) {
+    body_at_.resize(moved_.size());
+    std::iota(body_at_.begin(), body_at_.end(), 0);
+  } else {
+    const BackEndScope scope;  // orders allocate, as the factorisation does
+    body_at_ = least_fill_.find(graph_).order;
+  }
   int place = 0;
   for (std::size_t k = 0; k < body_at_.size(); ++k) {
     body_at_[k] = moved_[body_at_[k]];
@@ -209,6 +215,17 @@ void BodyNewtonSystem::assemble(const std::vector<Block>& B) {
   });
 }
 
+bool BodyNewtonSystem::factor_dense() {
+  const int n = static_cast<int>(rows_->degrees_of_freedom());
+  double* column = dense_.reset(n);
+  for (int c = 0; c < n; ++c, column += n) {
+    for (int k = outer_[c]; k < outer_[c + 1]; ++k) {
+      column[inner_[k]] = values_[k];
+    }
+  }
+  return dense_.factor();
+}
+
 bool BodyNewtonSystem::factor(const std::vector<Block>& A, const std::vector<Block>& B,
                               double alpha) {
   if (!invert_blocks(A, B, alpha)) {
@@ -219,7 +236,7 @@ bool BodyNewtonSystem::factor(const std::vector<Block>& A, const std::vector<Blo
     return true;
   }
   assemble(B);
-  return lu_.factor(matrix());
+  return is_dense() ? factor_dense() : lu_.factor(matrix());
 }
 
 /// out = blocks in.
@@ -249,7 +266,11 @@ bool BodyNewtonSystem::solve(const Vector& F, Vector& dx) {
       const Body& body = bodies_[b];
       in_order_.segment(body.place, body.dimension) = -y_.segment(body.offset, body.dimension);
     }
-    lu_.solve({in_order_.data(), static_cast<std::size_t>(in_order_.size())});
+    if (is_dense()) {
+      dense_.solve(in_order_.data());
+    } else {
+      lu_.solve({in_order_.data(), static_cast<std::size_t>(in_order_.size())});
+    }
     for (const int b : body_at_) {
       const Body& body = bodies_[b];
       y_.segment(body.offset, body.dimension) = in_order_.segment(body.place, body.dimension);

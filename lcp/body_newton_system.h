@@ -1,6 +1,7 @@
 #pragma once
 
 #include <signorini/lcp/alart_curnier_function.h>
+#include <signorini/lcp/dense_lu.h>
 #include <signorini/lcp/least_fill.h>
 #include <signorini/lcp/sparse_lu.h>
 #include <signorini/lcp/whitened_rows.h>
@@ -17,10 +18,13 @@ namespace signorini::lcp {
 ///
 /// The matrix has a row a degree of freedom of the bodies, however many contacts there are, one
 /// pattern for all steps, and is factored by SparseLu, since D is not symmetric where
-/// contacts slide, its bodies in the order of least_fill.h. alpha > 0 keeps K invertible; the
-/// numbers of dx lose digits as alpha goes to 0.
+/// contacts slide, its bodies in the order of least_fill.h; up to kDenseColumns columns by DenseLu,
+/// as they come. alpha > 0 keeps K invertible; the numbers of dx lose digits as alpha goes to 0.
 class BodyNewtonSystem {
  public:
+  /// Ten free bodies: from there on the sparse factor is faster.
+  static constexpr int kDenseColumns = 60;
+
   /// Keeps rows and function, whose groups must be the same.
   void set(const WhitenedRows& rows, const AlartCurnierFunction& function);
 
@@ -39,6 +43,8 @@ class BodyNewtonSystem {
   void order_bodies();
   [[nodiscard]] int find_start(const std::pair<int, int>& ranks) const;
   void set_pattern();
+  [[nodiscard]] bool is_dense() const { return rows_->degrees_of_freedom() <= kDenseColumns; }
+  [[nodiscard]] bool factor_dense();
   [[nodiscard]] SparseLu::View matrix() const;
   [[nodiscard]] bool invert_blocks(const std::vector<AlartCurnierFunction::Block>& A,
                                    const std::vector<AlartCurnierFunction::Block>& B, double alpha);
@@ -74,6 +80,7 @@ class BodyNewtonSystem {
   Vector h_, y_, gy_;
   Vector in_order_;  // y_, as the matrix has it
   SparseLu lu_;
+  DenseLu dense_;
 };
 
 }  // namespace signorini::lcp
