@@ -43,6 +43,8 @@ class AlartCurnierFunction {
   void set(const Problem& problem, const Vector& scale, double unit);
 
   [[nodiscard]] const std::vector<Group>& groups() const { return groups_; }
+  /// The coupled rows, coefficients scaled.
+  [[nodiscard]] const std::vector<CoupledLimit>& limits() const { return limits_; }
   [[nodiscard]] int group_of(Index row) const { return group_of_row_[row]; }
 
   /// F at (x, u). rho > 0, dimensionless, trades x against u where they conflict.

@@ -40,6 +40,16 @@ void BodyNewtonSystem::find_pairs() {
       }
     }
   });
+  for (const CoupledLimit& limit : function_->limits()) {
+    for (const auto& f : rows_->entries_of(function_->group_of(limit.normal_row))) {
+      for (const auto& e : rows_->entries_of(function_->group_of(limit.row))) {
+        if (e.dimension > 0 && f.dimension > 0) {
+          pairs_.emplace_back(f.body, e.body);
+          pairs_.emplace_back(e.body, f.body);  // the order is that of a symmetric pattern
+        }
+      }
+    }
+  }
   std::sort(pairs_.begin(), pairs_.end());
   pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
 }
@@ -215,6 +225,35 @@ void BodyNewtonSystem::assemble(const std::vector<Block>& B) {
   });
 }
 
+/// H += G^T D G of the couplings: column n of D, d_n = K_n^-1 B_n, goes on to the rows t that
+/// follow it as D_tn = -E_tn d_n.
+void BodyNewtonSystem::add_couplings(const std::vector<Block>& B) {
+  for (const auto& [row, column, value] : *couplings_) {
+    const int normal = function_->group_of(column);
+    const int tangent = function_->group_of(row);
+    const double D = -value * inverse_[normal](0, 0) * B[normal](0, 0);
+    if (D == 0.0) {
+      continue;
+    }
+    for (const auto& f : rows_->entries_of(normal)) {
+      for (const auto& e : rows_->entries_of(tangent)) {
+        if (e.dimension == 0 || f.dimension == 0) {
+          continue;
+        }
+        const int start = find_start({bodies_[f.body].rank, bodies_[e.body].rank});
+        const double* left = rows_->values_of(tangent) + e.column;
+        const double* right = rows_->values_of(normal) + f.column;
+        for (int c = 0; c < f.dimension; ++c) {
+          double* sum = values_.data() + outer_[bodies_[f.body].place + c] + start;
+          for (int r = 0; r < e.dimension; ++r) {
+            sum[r] += left[r] * D * right[c];
+          }
+        }
+      }
+    }
+  }
+}
+
 bool BodyNewtonSystem::factor_dense() {
   const int n = static_cast<int>(rows_->degrees_of_freedom());
   double* column = dense_.reset(n);
@@ -227,15 +266,18 @@ bool BodyNewtonSystem::factor_dense() {
 }
 
 bool BodyNewtonSystem::factor(const std::vector<Block>& A, const std::vector<Block>& B,
+                              const std::vector<AlartCurnierFunction::Coupling>& couplings,
                               double alpha) {
   if (!invert_blocks(A, B, alpha)) {
     return false;
   }
   B_ = &B;
+  couplings_ = &couplings;
   if (rows_->degrees_of_freedom() == 0) {
     return true;
   }
   assemble(B);
+  add_couplings(B);
   return is_dense() ? factor_dense() : lu_.factor(matrix());
 }
 
@@ -257,9 +299,17 @@ void BodyNewtonSystem::apply(const std::vector<Block>& blocks, const Vector& in,
   }
 }
 
+/// out = K^-1 in.
+void BodyNewtonSystem::apply_inverse(const Vector& in, Vector& out) const {
+  apply(inverse_, in, out);
+  for (const auto& [row, column, value] : *couplings_) {
+    out[row] -= value * out[column];
+  }
+}
+
 bool BodyNewtonSystem::solve(const Vector& F, Vector& dx) {
   if (rows_->degrees_of_freedom() > 0) {
-    apply(inverse_, F, h_);
+    apply_inverse(F, h_);
     rows_->transpose_times(h_, y_);
     in_order_.resize(y_.size());
     for (const int b : body_at_) {
@@ -281,7 +331,7 @@ bool BodyNewtonSystem::solve(const Vector& F, Vector& dx) {
   } else {
     h_ = F;
   }
-  apply(inverse_, h_, dx);
+  apply_inverse(h_, dx);
   dx = -dx;
   return dx.allFinite();
 }

@@ -12,7 +12,8 @@
 namespace signorini::lcp {
 
 /// The Newton step of F(x, u) = 0, u = (G G^T + C + alpha I) x + b, in body space: with
-/// K = A + B (C + alpha), block diagonal over the groups, and D = K^-1 B,
+/// K = A + B (C + alpha) + E, block diagonal over the groups but for the couplings E of rows at
+/// limits that follow a normal row (A = 1, B = 0 there), and D = K^-1 B,
 ///
 ///     (I + G^T D G) y = -G^T K^-1 F,     dx = -K^-1 (F + B G y).
 ///
@@ -28,10 +29,12 @@ class BodyNewtonSystem {
   /// Keeps rows and function, whose groups must be the same.
   void set(const WhitenedRows& rows, const AlartCurnierFunction& function);
 
-  /// Keeps B until the last solve(). @return false if a matrix is singular; solve() must then not
-  /// be called.
+  /// Keeps B and the couplings until the last solve(). @return false if a matrix is singular;
+  /// solve() must then not be called.
   [[nodiscard]] bool factor(const std::vector<AlartCurnierFunction::Block>& A,
-                            const std::vector<AlartCurnierFunction::Block>& B, double alpha);
+                            const std::vector<AlartCurnierFunction::Block>& B,
+                            const std::vector<AlartCurnierFunction::Coupling>& couplings,
+                            double alpha);
   /// @return false if the step is not finite; dx is then of no use.
   [[nodiscard]] bool solve(const Vector& F, Vector& dx);
 
@@ -49,12 +52,15 @@ class BodyNewtonSystem {
   [[nodiscard]] bool invert_blocks(const std::vector<AlartCurnierFunction::Block>& A,
                                    const std::vector<AlartCurnierFunction::Block>& B, double alpha);
   void assemble(const std::vector<AlartCurnierFunction::Block>& B);
+  void add_couplings(const std::vector<AlartCurnierFunction::Block>& B);
+  void apply_inverse(const Vector& in, Vector& out) const;
   void apply(const std::vector<AlartCurnierFunction::Block>& blocks, const Vector& in,
              Vector& out) const;
 
   const WhitenedRows* rows_ = nullptr;
   const AlartCurnierFunction* function_ = nullptr;
   const std::vector<AlartCurnierFunction::Block>* B_ = nullptr;
+  const std::vector<AlartCurnierFunction::Coupling>* couplings_ = nullptr;
   std::vector<AlartCurnierFunction::Block> inverse_;  // K^-1
   struct Body {
     int dimension;

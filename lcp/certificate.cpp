@@ -34,6 +34,14 @@ constexpr long double kFarInside = 1e-3L;
 constexpr long double kLost = 4.0L * std::numeric_limits<long double>::epsilon();
 constexpr long double kWiden = 1.0L + 0x1p-58L;  // more than rounding a cone's norms may cost
 
+/// What long double may have lost of w_T, times mu, where the floor is that of the boundary and
+/// smaller. Of z_c = 0, whose -w~ is in the polar cone as soon as w_N >= 0, nothing.
+/// @param in_w_tilde mu (|M||z| + |q|)_T @param boundary max(|z_T|, mu |z_N|)
+long double lost_of_slip(long double in_w_tilde, long double boundary) {
+  const long double lost = kLost * in_w_tilde;
+  return boundary > 0.0L && lost > kEpsilon * boundary ? lost : 0.0L;
+}
+
 Certificate refuse() {
   Certificate certificate;
   certificate.natural_residual = kInfinity;
@@ -259,9 +267,12 @@ Certifier::Measure Certifier::measure_cone(const Problem& problem, std::size_t c
     z_size = std::max(z_size, std::abs(z[k]));
     sum.z_dot_w += z[k] * w[k];
   }
-  sum.backward = sum.unit_free > 0.0L ? sum.unit_free / (scale * z_size + size) : 0.0L;
-  const long double boundary = std::max(tangential, mu * std::abs(z[0]));
   const long double in_w_tilde = is_coulomb ? mu * slip_size : 0.0L;
+  const long double boundary = std::max(tangential, mu * std::abs(z[0]));
+  const long double lost = lost_of_slip(in_w_tilde, boundary);
+  sum.natural += lost;
+  sum.unit_free += lost;
+  sum.backward = sum.unit_free > 0.0L ? sum.unit_free / (scale * z_size + size) : 0.0L;
   sum.boundary = natural.is_far_inside ? std::min(in_w_tilde, boundary) : boundary;
   sum.scaled_boundary =
       scaled.is_far_inside ? std::min(in_w_tilde, scale * boundary) : scale * boundary;
@@ -511,8 +522,13 @@ Certifier::Measure Certifier::bound_group(const Problem& problem, int first, int
     measure.cone_violation = 0.0;
     if (problem.friction_law == FrictionLaw::kCoulomb) {
       const long double slip_size = *std::max_element(&size_[first + 1], &size_[first] + d);
-      measure.boundary = problem.cones[cone].coefficient * slip_size;
+      const long double mu = problem.cones[cone].coefficient;
+      measure.boundary = mu * slip_size;
       measure.scaled_boundary = measure.boundary;
+      const long double lost =
+          lost_of_slip(measure.boundary, std::max(std::sqrt(tangential), mu * std::abs(z[0])));
+      measure.natural += lost;
+      measure.unit_free += lost;
     }
   }
   return measure;

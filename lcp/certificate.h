@@ -193,7 +193,8 @@ class Certifier {
 /// The only definition of "solved": kSolved if both residuals are <= tolerance; else
 /// kSolvedToRounding if each residual is <= tolerance, or <= 4 of its floors and <= 1e-5 (a floor
 /// above that says that z is too large to mean anything beside q); else `otherwise`. 2^-10 of its
-/// floor is added to each residual first: what computing it in long double may have lost.
+/// floor is added to each residual first: what computing it in long double may have lost. (What
+/// that cost a cone's w_T, times mu, is in the residuals: with mu = 1e12 it is more than they.)
 [[nodiscard]] Status judge(const Certificate& certificate, double tolerance, Status otherwise);
 
 }  // namespace signorini::lcp

@@ -1,10 +1,24 @@
 #include <signorini/lcp/group_scale.h>
 #include <signorini/lcp/scaled_groups.h>
 
+#include <algorithm>
+
 namespace signorini::lcp {
 
+/// Whether a coupled row has limits that follow another coupled row.
+bool ScaledGroups::has_chained_limits(const Problem& problem) {
+  is_coupled_.assign(problem.size(), 0);
+  for (const CoupledLimit& limit : problem.limits) {
+    is_coupled_[limit.row] = 1;
+  }
+  return std::ranges::any_of(problem.limits, [this](const CoupledLimit& limit) {
+    return is_coupled_[limit.normal_row] != 0;
+  });
+}
+
 void ScaledGroups::set(const Problem& problem) {
-  in_body_space_ = std::holds_alternative<FactoredMatrix>(problem.M) && problem.limits.empty();
+  in_body_space_ =
+      std::holds_alternative<FactoredMatrix>(problem.M) && !has_chained_limits(problem);
   if (in_body_space_) {
     set_bodies(problem);
   } else {

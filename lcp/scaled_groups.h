@@ -14,7 +14,7 @@ namespace signorini::lcp {
 /// one s a group that makes the group's diagonal block of W about 1 and t = |s q|_inf (1 if that is
 /// 0), and the linear systems of Newton's method on it.
 ///
-/// A factored M stays factored, unless coupled limits tie rows of different groups.
+/// A factored M stays factored, unless a row's limits follow a row that has coupled limits itself.
 class ScaledGroups {
  public:
   /// Takes over M, q and everything else. Reuses memory.
@@ -31,7 +31,7 @@ class ScaledGroups {
                             const std::vector<AlartCurnierFunction::Block>& B,
                             const std::vector<AlartCurnierFunction::Coupling>& couplings,
                             double alpha) {
-    return in_body_space_ ? body_system_.factor(A, B, alpha)
+    return in_body_space_ ? body_system_.factor(A, B, couplings, alpha)
                           : system_.factor(A, B, couplings, alpha);
   }
   /// dx with that matrix times dx = -F. @return false if dx is not finite; it is then of no use.
@@ -50,14 +50,16 @@ class ScaledGroups {
   void from_caller(const Vector& z, Vector& x) const { x = z.cwiseQuotient(s_) / t_; }
 
  private:
+  [[nodiscard]] bool has_chained_limits(const Problem& problem);
   void set_given(const Problem& problem);
   void set_bodies(const Problem& problem);
 
   Vector s_, b_;
   double t_ = 1.0;
   bool in_body_space_ = false;
-  WhitenedRows rows_;  // of a factored problem, or
-  SparseMatrix W_;     // the matrix, scaled
+  std::vector<char> is_coupled_;  // of every row
+  WhitenedRows rows_;             // of a factored problem, or
+  SparseMatrix W_;                // the matrix, scaled
   SparseForm sparse_form_;
   Vector work_;
   std::vector<int> group_start_;  // of rows_

@@ -60,6 +60,12 @@ class WhitenedRows {
       visit(entries_of(g), values_.data() + groups_[g].values, groups_[g].width);
     }
   }
+  /// The bodies of group g.
+  [[nodiscard]] std::span<const Entry> entries_of(int g) const {
+    return std::span(entries_).subspan(groups_[g].entry, groups_[g + 1].entry - groups_[g].entry);
+  }
+  /// The first row of group g.
+  [[nodiscard]] const double* values_of(int g) const { return values_.data() + groups_[g].values; }
   /// The lower triangle of I + G^T D G for a diagonal D; the pattern is the same at every call.
   /// @param d the diagonal of D, >= 0
   const SparseMatrix& body_space_matrix(const Vector& d);
@@ -102,9 +108,6 @@ class WhitenedRows {
 
   [[nodiscard]] int groups() const { return static_cast<int>(groups_.size()) - 1; }
   [[nodiscard]] int group_rows(int g) const { return groups_[g + 1].row - groups_[g].row; }
-  [[nodiscard]] std::span<const Entry> entries_of(int g) const {
-    return std::span(entries_).subspan(groups_[g].entry, groups_[g + 1].entry - groups_[g].entry);
-  }
 
   Index degrees_of_freedom_ = 0;
   std::vector<Group> groups_;  // and one behind the last
