@@ -18,7 +18,7 @@ using scenes::Scene;
 
 constexpr double kG = 9.81;
 
-CoulombReport forces_of(const Scene& scene, const Vec3& gravity, std::vector<bool> slides,
+CoulombReport forces_of(const Scene& scene, const Vec3& gravity, const std::vector<bool>& slides,
                         const RestingSettings& settings = {}) {
   CoulombReport report;
   coulomb_forces(scene.bodies, scene.state, scene.contacts, slides,
