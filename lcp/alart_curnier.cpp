@@ -19,6 +19,8 @@ constexpr int kFewSteps = 12;  // of an inner iteration that went well
 constexpr double kFall = 0.1;  // of alpha after one of few steps
 constexpr double kSlowFall = 0.5;
 constexpr double kRise = 3.0;
+constexpr double kAboveFailed = 2.0;  // where alpha goes at first, of the last that failed
+constexpr double kForgets = 0.5;      // of that, a step
 constexpr double kStrictness = 1e-2;  // of an inner iteration, of the error before it
 // What a proximal step must leave of the best error to help, and how many may not before a start
 // is given up for 0.
@@ -154,6 +156,7 @@ Status AlartCurnier::Workspace::solve(const Problem& problem, const AlartCurnier
   double error = error_of(x_);
   double strictness = kStrictness;
   int stalled = 0;
+  double failed = 0.0;  // alpha
   double least = error;
   int without = 0;
   bool has_start = !x_.isZero(0.0);
@@ -175,8 +178,13 @@ Status AlartCurnier::Workspace::solve(const Problem& problem, const AlartCurnier
     least = helped ? after : least;
     without = helped ? 0 : without + 1;
     is_stuck = is_stuck || (has_start && without >= kPatience);
-    if (!is_stuck && (inner.converged || violation() <= std::max(1e-12, 0.1 * error))) {
-      alpha = std::max(alpha * (inner.steps < kFewSteps ? kFall : kSlowFall), kSmallestAlpha);
+    const bool is_near = helped && violation() <= std::max(1e-12, 0.1 * error);
+    if (!is_stuck && (inner.converged || is_near)) {
+      // Where proximal points lead away, only the problem itself is of use.
+      const double lowest = after > error ? 0.0 : kAboveFailed * failed;
+      const double fallen = alpha * (inner.steps < kFewSteps ? kFall : kSlowFall);
+      alpha = std::min(alpha, std::max({fallen, lowest, kSmallestAlpha}));
+      failed = after > error ? 0.0 : kForgets * failed;
       error = after;
       stalled = 0;
       continue;
@@ -187,6 +195,7 @@ Status AlartCurnier::Workspace::solve(const Problem& problem, const AlartCurnier
         x_ = anchor_;
       }
       error = std::min(error, after);
+      failed = alpha;
       alpha = std::min(kRise * alpha, kLargestAlpha);
       continue;
     }
@@ -200,6 +209,7 @@ Status AlartCurnier::Workspace::solve(const Problem& problem, const AlartCurnier
     alpha = std::max(settings.proximal, AlartCurnierSettings().proximal);
     strictness = kStrictness;
     stalled = 0;
+    failed = 0.0;
   }
   finish(result);
   return deadline.passed() ? Status::kTimeLimit

@@ -33,7 +33,8 @@ struct AlartCurnierSettings : SolverSettings {
 /// 1991; proximal form: Acary, Bremond, Huber, On solving contact problems with Coulomb friction,
 /// 2018, section 5.2). Redundant contacts, for which plain Newton has a singular matrix, only make
 /// alpha matter; the line search weighs u by rho = max(alpha, min(1, error))^-1/2. alpha falls
-/// while the inner iterations are few and rises when they fail. A start from which 20 proximal
+/// while the inner iterations succeed, fastest where they are few, and rises when they fail; where
+/// it failed it does not come back at once. A start from which 20 proximal
 /// steps bring less than a tenth, or that the largest alpha or the finest tolerance does not help,
 /// is given up for 0 (once): forces that strain against each other, once there, stay.
 ///
@@ -41,10 +42,10 @@ struct AlartCurnierSettings : SolverSettings {
 /// converge only where W is monotone on the cones. Statuses beside solved: kIterationLimit,
 /// kTimeLimit, kStalled (alpha at its largest and no progress); z is the best iterate by
 /// certificate.
-/// Cost: one sparse LU a Newton step (dense up to NewtonSystem::kDenseRows active rows, or
-/// BodyNewtonSystem::kDenseColumns degrees of freedom);
-/// statistics: iterations are proximal steps, factorizations Newton steps, factor_bytes what the
-/// sparse LU held, which is all that a problem of a size it has seen before allocates.
+/// Cost: one sparse LU a Newton step, in body space for a factored M (BodyNewtonSystem), else of
+/// the active rows (NewtonSystem; dense up to its kDenseRows); statistics: iterations are proximal
+/// steps, factorizations Newton steps, factor_bytes what the sparse LU held. A problem of a pattern
+/// it has seen before allocates nothing in body space, else what Eigen's LU takes.
 class AlartCurnier : public Solver {
  public:
   /// @throws std::invalid_argument for a setting out of its range.

@@ -3,7 +3,8 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <numeric>
+#include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -17,12 +18,9 @@ void BodyNewtonSystem::set(const WhitenedRows& rows, const AlartCurnierFunction&
   function_ = &function;
   lu_.reset_bytes();
   find_pairs();
-  order_bodies();
   set_pattern();
-  if (!is_dense()) {
-    lu_.keep_order();
-    lu_.analyse(matrix());
-  }
+  const BackEndScope scope;  // an analysis allocates
+  block_lu_.analyse(matrix());
 }
 
 /// Bodies that no row moves have no dimension, and are in no pair.
@@ -32,7 +30,7 @@ void BodyNewtonSystem::find_pairs() {
   rows_->visit_groups([this](Entries entries, const double*, int) {
     for (const auto& f : entries) {
       bodies_.resize(std::max<std::size_t>(bodies_.size(), f.body + 1), Body{});
-      bodies_[f.body] = {f.dimension, f.offset, 0, 0};
+      bodies_[f.body] = {f.dimension, f.offset};
       for (const auto& e : entries) {
         if (e.dimension > 0 && f.dimension > 0) {
           pairs_.emplace_back(f.body, e.body);
@@ -54,52 +52,9 @@ void BodyNewtonSystem::find_pairs() {
   pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
 }
 
-/// Gives every body that rows move its rank, and the pairs their ranks for their numbers.
-void BodyNewtonSystem::order_bodies() {
-  graph_.start.assign(1, 0);
-  graph_.neighbours.clear();
-  graph_.weight.clear();
-  moved_.clear();
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    if (bodies_[b].dimension > 0) {
-      bodies_[b].rank = static_cast<int>(moved_.size());  // for now, its number in the graph
-      moved_.push_back(static_cast<int>(b));
-    }
-  }
-  std::size_t pair = 0;
-  for (const int b : moved_) {
-    for (; pair < pairs_.size() && pairs_[pair].first == b; ++pair) {
-      if (pairs_[pair].second != b) {
-        graph_.neighbours.push_back(bodies_[pairs_[pair].second].rank);
-      }
-    }
-    graph_.start.push_back(static_cast<int>(graph_.neighbours.size()));
-    graph_.weight.push_back(bodies_[b].dimension);
-  }
-  if (is_dense()) {
-    body_at_.resize(moved_.size());
-    std::iota(body_at_.begin(), body_at_.end(), 0);
-  } else {
-    const BackEndScope scope;  // orders allocate, as the factorisation does
-    body_at_ = least_fill_.find(graph_).order;
-  }
-  int place = 0;
-  for (std::size_t k = 0; k < body_at_.size(); ++k) {
-    body_at_[k] = moved_[body_at_[k]];
-    Body& body = bodies_[body_at_[k]];
-    body.rank = static_cast<int>(k);
-    body.place = place;
-    place += body.dimension;
-  }
-  for (auto& [column, row] : pairs_) {
-    column = bodies_[column].rank;
-    row = bodies_[row].rank;
-  }
-  std::sort(pairs_.begin(), pairs_.end());
-}
-
-int BodyNewtonSystem::find_start(const std::pair<int, int>& ranks) const {
-  return pair_start_[std::lower_bound(pairs_.begin(), pairs_.end(), ranks) - pairs_.begin()];
+int BodyNewtonSystem::find_start(int column, int row) const {
+  const auto found = std::lower_bound(pairs_.begin(), pairs_.end(), std::pair(column, row));
+  return pair_start_[found - pairs_.begin()];
 }
 
 /// One dense block for every pair.
@@ -109,16 +64,16 @@ void BodyNewtonSystem::set_pattern() {
   pair_start_.clear();
   diagonal_.resize(rows_->degrees_of_freedom());
   for (std::size_t first = 0, last = 0; first < pairs_.size(); first = last) {
-    const Body& column = bodies_[body_at_[pairs_[first].first]];
+    const Body& column = bodies_[pairs_[first].first];
     int length = 0;
     for (; last < pairs_.size() && pairs_[last].first == pairs_[first].first; ++last) {
       pair_start_.push_back(length);
-      length += bodies_[body_at_[pairs_[last].second]].dimension;
+      length += bodies_[pairs_[last].second].dimension;
     }
-    for (int c = column.place; c < column.place + column.dimension; ++c) {
+    for (int c = column.offset; c < column.offset + column.dimension; ++c) {
       for (std::size_t k = first; k < last; ++k) {
-        const Body& row = bodies_[body_at_[pairs_[k].second]];
-        for (int r = row.place; r < row.place + row.dimension; ++r) {
+        const Body& row = bodies_[pairs_[k].second];
+        for (int r = row.offset; r < row.offset + row.dimension; ++r) {
           if (r == c) {
             diagonal_[c] = static_cast<int>(inner_.size());
           }
@@ -134,13 +89,13 @@ void BodyNewtonSystem::set_pattern() {
     for (const auto& f : entries) {
       for (const auto& e : entries) {
         const bool meets = e.dimension > 0 && f.dimension > 0;
-        row_offset_.push_back(meets ? find_start({bodies_[f.body].rank, bodies_[e.body].rank}) : 0);
+        row_offset_.push_back(meets ? find_start(f.body, e.body) : 0);
       }
     }
   });
 }
 
-SparseLu::View BodyNewtonSystem::matrix() const {
+BlockLu::View BodyNewtonSystem::matrix() const {
   const Index n = rows_->degrees_of_freedom();
   return {n, n, static_cast<Index>(inner_.size()), outer_.data(), inner_.data(), values_.data()};
 }
@@ -213,7 +168,7 @@ void BodyNewtonSystem::assemble(const std::vector<Block>& B) {
         for (const auto& e : entries) {
           const int start = row_offset_[at++];
           for (int c = 0; c < f.dimension; ++c) {
-            double* column = values_.data() + outer_[bodies_[f.body].place + c] + start;
+            double* column = values_.data() + outer_[f.offset + c] + start;
             add_product(G + e.column, product_.data() + f.column + c, d, width, e.dimension,
                         column);
           }
@@ -240,11 +195,11 @@ void BodyNewtonSystem::add_couplings(const std::vector<Block>& B) {
         if (e.dimension == 0 || f.dimension == 0) {
           continue;
         }
-        const int start = find_start({bodies_[f.body].rank, bodies_[e.body].rank});
+        const int start = find_start(f.body, e.body);
         const double* left = rows_->values_of(tangent) + e.column;
         const double* right = rows_->values_of(normal) + f.column;
         for (int c = 0; c < f.dimension; ++c) {
-          double* sum = values_.data() + outer_[bodies_[f.body].place + c] + start;
+          double* sum = values_.data() + outer_[f.offset + c] + start;
           for (int r = 0; r < e.dimension; ++r) {
             sum[r] += left[r] * D * right[c];
           }
@@ -252,17 +207,6 @@ void BodyNewtonSystem::add_couplings(const std::vector<Block>& B) {
       }
     }
   }
-}
-
-bool BodyNewtonSystem::factor_dense() {
-  const int n = static_cast<int>(rows_->degrees_of_freedom());
-  double* column = dense_.reset(n);
-  for (int c = 0; c < n; ++c, column += n) {
-    for (int k = outer_[c]; k < outer_[c + 1]; ++k) {
-      column[inner_[k]] = values_[k];
-    }
-  }
-  return dense_.factor();
 }
 
 bool BodyNewtonSystem::factor(const std::vector<Block>& A, const std::vector<Block>& B,
@@ -278,7 +222,63 @@ bool BodyNewtonSystem::factor(const std::vector<Block>& A, const std::vector<Blo
   }
   assemble(B);
   add_couplings(B);
-  return is_dense() ? factor_dense() : lu_.factor(matrix());
+  pivots_freely_ = !block_lu_.factor(matrix());
+  return !pivots_freely_ || factor_freely();
+}
+
+bool BodyNewtonSystem::factor_freely() {
+  pivots_freely_ = true;
+  lu_.analyse(matrix());
+  return lu_.factor(matrix());
+}
+
+/// max_i |b - H y|_i / (|H| |y| + |b|)_i (Oettli, Prager 1964); leaves b - H y in residual_.
+double BodyNewtonSystem::backward_error(const Vector& b, const Vector& y) {
+  residual_ = b;
+  size_ = b.cwiseAbs();
+  for (Index c = 0; c < y.size(); ++c) {
+    for (int k = outer_[c]; k < outer_[c + 1]; ++k) {
+      const double term = values_[k] * y[c];
+      residual_[inner_[k]] -= term;
+      size_[inner_[k]] += std::abs(term);
+    }
+  }
+  double worst = 0.0;
+  for (Index i = 0; i < y.size(); ++i) {
+    if (!std::isfinite(residual_[i])) {
+      return std::numeric_limits<double>::infinity();
+    }
+    if (residual_[i] != 0.0) {
+      worst = std::max(worst, std::abs(residual_[i]) / size_[i]);
+    }
+  }
+  return worst;
+}
+
+/// y <- H^-1 y.
+bool BodyNewtonSystem::divide(Vector& y) {
+  constexpr double kEnough = 1e-12;
+  constexpr int kRefinements = 3;
+  const auto numbers = [](Vector& x) {
+    return std::span(x.data(), static_cast<std::size_t>(x.size()));
+  };
+  right_ = y;
+  if (!pivots_freely_) {
+    block_lu_.solve(numbers(y));
+    for (int k = 0; k <= kRefinements; ++k) {
+      if (backward_error(right_, y) <= kEnough) {
+        return true;
+      }
+      block_lu_.solve(numbers(residual_));
+      y += residual_;
+    }
+    if (!factor_freely()) {
+      return false;
+    }
+  }
+  y = right_;
+  lu_.solve(numbers(y));
+  return true;
 }
 
 /// out = blocks in.
@@ -311,19 +311,9 @@ bool BodyNewtonSystem::solve(const Vector& F, Vector& dx) {
   if (rows_->degrees_of_freedom() > 0) {
     apply_inverse(F, h_);
     rows_->transpose_times(h_, y_);
-    in_order_.resize(y_.size());
-    for (const int b : body_at_) {
-      const Body& body = bodies_[b];
-      in_order_.segment(body.place, body.dimension) = -y_.segment(body.offset, body.dimension);
-    }
-    if (is_dense()) {
-      dense_.solve(in_order_.data());
-    } else {
-      lu_.solve({in_order_.data(), static_cast<std::size_t>(in_order_.size())});
-    }
-    for (const int b : body_at_) {
-      const Body& body = bodies_[b];
-      y_.segment(body.offset, body.dimension) = in_order_.segment(body.place, body.dimension);
+    y_ = -y_;
+    if (!divide(y_)) {
+      return false;
     }
     rows_->times(y_, gy_);
     apply(*B_, gy_, h_);

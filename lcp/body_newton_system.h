@@ -1,8 +1,7 @@
 #pragma once
 
 #include <signorini/lcp/alart_curnier_function.h>
-#include <signorini/lcp/dense_lu.h>
-#include <signorini/lcp/least_fill.h>
+#include <signorini/lcp/block_lu.h>
 #include <signorini/lcp/sparse_lu.h>
 #include <signorini/lcp/whitened_rows.h>
 
@@ -18,14 +17,12 @@ namespace signorini::lcp {
 ///     (I + G^T D G) y = -G^T K^-1 F,     dx = -K^-1 (F + B G y).
 ///
 /// The matrix has a row a degree of freedom of the bodies, however many contacts there are, one
-/// pattern for all steps, and is factored by SparseLu, since D is not symmetric where
-/// contacts slide, its bodies in the order of least_fill.h; up to kDenseColumns columns by DenseLu,
-/// as they come. alpha > 0 keeps K invertible; the numbers of dx lose digits as alpha goes to 0.
+/// pattern for all steps, and is factored by BlockLu, since D is not symmetric where contacts
+/// slide. y is refined to a backward error of 1e-12, row by row; where that cannot be had, SparseLu
+/// factors the matrix, which pivots as it needs. alpha > 0 keeps K invertible; the numbers of dx
+/// lose digits as alpha goes to 0.
 class BodyNewtonSystem {
  public:
-  /// Ten free bodies: from there on the sparse factor is faster.
-  static constexpr int kDenseColumns = 60;
-
   /// Keeps rows and function, whose groups must be the same.
   void set(const WhitenedRows& rows, const AlartCurnierFunction& function);
 
@@ -39,20 +36,22 @@ class BodyNewtonSystem {
   [[nodiscard]] bool solve(const Vector& F, Vector& dx);
 
   /// The most that the back-end held since set().
-  [[nodiscard]] std::int64_t factor_bytes() const { return lu_.bytes(); }
+  [[nodiscard]] std::int64_t factor_bytes() const {
+    return static_cast<std::int64_t>(block_lu_.bytes()) + lu_.bytes();
+  }
 
  private:
   void find_pairs();
-  void order_bodies();
-  [[nodiscard]] int find_start(const std::pair<int, int>& ranks) const;
+  [[nodiscard]] int find_start(int column, int row) const;
   void set_pattern();
-  [[nodiscard]] bool is_dense() const { return rows_->degrees_of_freedom() <= kDenseColumns; }
-  [[nodiscard]] bool factor_dense();
-  [[nodiscard]] SparseLu::View matrix() const;
+  [[nodiscard]] BlockLu::View matrix() const;
   [[nodiscard]] bool invert_blocks(const std::vector<AlartCurnierFunction::Block>& A,
                                    const std::vector<AlartCurnierFunction::Block>& B, double alpha);
   void assemble(const std::vector<AlartCurnierFunction::Block>& B);
   void add_couplings(const std::vector<AlartCurnierFunction::Block>& B);
+  [[nodiscard]] bool factor_freely();
+  [[nodiscard]] double backward_error(const Vector& b, const Vector& y);
+  [[nodiscard]] bool divide(Vector& y);
   void apply_inverse(const Vector& in, Vector& out) const;
   void apply(const std::vector<AlartCurnierFunction::Block>& blocks, const Vector& in,
              Vector& out) const;
@@ -65,16 +64,10 @@ class BodyNewtonSystem {
   struct Body {
     int dimension;
     int offset;  // in u
-    int rank;    // in the order of elimination
-    int place;   // of its first row in the matrix
   };
   std::vector<Body> bodies_;
-  Graph graph_;  // of the bodies that rows move, by their number among these
-  LeastFill least_fill_;
-  std::vector<int> moved_;    // that number's body
-  std::vector<int> body_at_;  // of every rank
-  // Two bodies that share a group, by rank, that of the columns first; sorted, and where the rows
-  // of the second start in the columns of the first.
+  // Two bodies that share a group, that of the columns first; sorted, and where the rows of the
+  // second start in the columns of the first.
   std::vector<std::pair<int, int>> pairs_;
   std::vector<int> pair_start_;
   std::vector<int> outer_, inner_;  // the pattern of H
@@ -84,9 +77,10 @@ class BodyNewtonSystem {
   std::vector<int> diagonal_;    // position of the diagonal in every column
   std::vector<double> product_;  // D G of a group
   Vector h_, y_, gy_;
-  Vector in_order_;  // y_, as the matrix has it
+  Vector right_, residual_, size_;
+  bool pivots_freely_ = false;
+  BlockLu block_lu_;
   SparseLu lu_;
-  DenseLu dense_;
 };
 
 }  // namespace signorini::lcp

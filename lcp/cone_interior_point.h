@@ -51,11 +51,11 @@ struct ConeInteriorPointSettings : SolverSettings {
 /// gets on), kNumericalBreakdown (a singular system, with no polish to follow); z is the best
 /// iterate by certificate. A warm start is tried as an answer, and is where the polish starts if
 /// the path finds nothing better; the path always starts cold. Cost: one sparse LU a step, in body
-/// space of I + G^T D G for a factored M (dense up to BodyNewtonSystem::kDenseColumns), otherwise
-/// as NewtonSystem does it, and two solves with it; statistics: iterations are interior point
-/// steps, factorizations those and the polish's, factor_bytes what the sparse LU held, which is all
-/// that a problem of a size it has seen before allocates (unless time_limit is set: the polish then
-/// gets what is left of it).
+/// space of I + G^T D G for a factored M (BodyNewtonSystem), otherwise as NewtonSystem does it, and
+/// two solves with it; statistics: iterations are interior point steps, factorizations those and
+/// the polish's, factor_bytes what the sparse LU held. A problem of a pattern it has seen before
+/// allocates nothing in body space, else what Eigen's LU takes (unless time_limit is set: the
+/// polish then gets what is left of it).
 class ConeInteriorPoint : public Solver {
  public:
   /// @throws std::invalid_argument for a setting out of its range.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <utility>
 
 // One source for every instruction set: the loops are templates over a vector type, inlined into
 // functions that are compiled for the set (gcc and clang vector extensions).
@@ -36,7 +37,7 @@ SIGNORINI_INLINE void store(const V& value, double* to) {
   std::memcpy(to, &value, sizeof value);
 }
 
-constexpr int kBlock = 8;    // columns factored together
+constexpr int kBlock = DenseKernels::kPivots;  // columns factored together
 constexpr int kDepth = 128;  // inner length of a product at a time: what the first cache holds
 
 /// C (kVectors vectors of rows, kColumns columns) -= A B^T over `depth` columns of A and B.
@@ -223,17 +224,161 @@ SIGNORINI_INLINE bool factor_panel(double* panel, int ld, int rows, int columns)
 }
 
 template <typename V, int kVectors, int kColumns>
-SIGNORINI_INLINE void subtract_square(double* square, int ld_square, const double* below, int ld,
-                                      int size, int columns) {
+SIGNORINI_INLINE void subtract_square(double* square, int ld_square, const double* A,
+                                      const double* B, int ld, int size, int columns) {
   for (int k = 0; k < columns; k += kDepth) {
     const int depth = std::min(kDepth, columns - k);
-    const double* B = below + static_cast<Stride>(k) * ld;
+    const Stride from = static_cast<Stride>(k) * ld;
     for (int j = 0; j < size; j += kBlock) {
       subtract_block<V, kVectors, kColumns>(square + static_cast<Stride>(j) * ld_square + j,
-                                            ld_square, B + j, B + j, ld, size - j,
+                                            ld_square, A + from + j, B + from + j, ld, size - j,
                                             std::min(kBlock, size - j), depth);
     }
   }
+}
+
+/// P M = L U of the kSize x kSize block at `lower`, `upper` (its transpose), into M (column-major,
+/// both triangles); the inverses of the diagonal of U. swap(a, b) is told of every exchange.
+template <int kSize, typename Swap>
+SIGNORINI_INLINE bool factor_lu_diagonal(const double* lower, const double* upper, Stride ld,
+                                         double* M, double* inverse, const Swap& swap) {
+  constexpr double kEnough = 0.1;  // of the largest number below
+#pragma GCC unroll 8
+  for (int c = 0; c < kSize; ++c) {
+#pragma GCC unroll 8
+    for (int r = 0; r < kSize; ++r) {
+      M[c * kSize + r] = r >= c ? lower[c * ld + r] : upper[r * ld + c];
+    }
+  }
+#pragma GCC unroll 8
+  for (int c = 0; c < kSize; ++c) {
+    int best = c;
+    for (int r = c + 1; r < kSize; ++r) {
+      if (std::abs(M[c * kSize + r]) > std::abs(M[c * kSize + best])) {
+        best = r;
+      }
+    }
+    if (!(std::abs(M[c * kSize + c]) >= kEnough * std::abs(M[c * kSize + best]))) {
+      for (int k = 0; k < kSize; ++k) {
+        std::swap(M[k * kSize + c], M[k * kSize + best]);
+      }
+      swap(c, best);
+    }
+    const double pivot = M[c * kSize + c];
+    if (!(pivot != 0.0 && std::abs(pivot) <= 1.7976931348623157e308)) {
+      return false;
+    }
+    inverse[c] = 1.0 / pivot;
+#pragma GCC unroll 8
+    for (int r = c + 1; r < kSize; ++r) {
+      M[c * kSize + r] *= inverse[c];
+    }
+#pragma GCC unroll 8
+    for (int k = c + 1; k < kSize; ++k) {
+#pragma GCC unroll 8
+      for (int r = c + 1; r < kSize; ++r) {
+        M[k * kSize + r] -= M[c * kSize + r] * M[k * kSize + c];
+      }
+    }
+  }
+  return true;
+}
+
+/// rows of kSize columns <- rows T^-1 from row `start` on, in whole vectors: T triangular, with
+/// entry(k, c) above its diagonal, and inverse(c) of its diagonal.
+template <typename V, int kSize, typename Entry, typename Inverse>
+SIGNORINI_INLINE void divide_rows(double* columns, Stride ld, int start, int rows,
+                                  const Entry& entry, const Inverse& inverse) {
+  for (int i = start; i < rows; i += kLanes<V>) {
+    V x[kSize];
+#pragma GCC unroll 8
+    for (int c = 0; c < kSize; ++c) {
+      V value = load<V>(columns + c * ld + i);
+#pragma GCC unroll 8
+      for (int k = 0; k < c; ++k) {
+        value -= x[k] * entry(k, c);
+      }
+      x[c] = value * inverse(c);
+    }
+#pragma GCC unroll 8
+    for (int c = 0; c < kSize; ++c) {
+      store<V>(x[c], columns + c * ld + i);
+    }
+  }
+}
+
+/// Factors kSize columns of both panels of which everything to the left has been subtracted.
+template <typename V, int kSize>
+SIGNORINI_INLINE bool factor_lu_block(double* lower, double* upper, Stride ld, int first, int rows,
+                                      int* exchanges) {
+  double M[kSize * kSize];
+  double inverse[kSize];
+  for (int c = 0; c < kSize; ++c) {
+    exchanges[first + c] = first + c;
+  }
+  const auto swap_rows = [&](int a, int b) {
+    exchanges[first + a] = first + b;
+    for (int k = 0; k < first; ++k) {
+      std::swap(lower[k * ld + first + a], lower[k * ld + first + b]);
+    }
+    for (int i = first + kSize; i < rows; ++i) {
+      std::swap(upper[(first + a) * ld + i], upper[(first + b) * ld + i]);
+    }
+  };
+  const Stride diagonal = first * ld + first;
+  if (!factor_lu_diagonal<kSize>(lower + diagonal, upper + diagonal, ld, M, inverse, swap_rows)) {
+    return false;
+  }
+  // In whole vectors from an aligned row on; what that does to the diagonal block is overwritten.
+  const int start = (first + kSize) / kLanes<V> * kLanes<V>;
+  divide_rows<V, kSize>(
+      lower + first * ld, ld, start, rows, [&](int k, int c) { return M[c * kSize + k]; },
+      [&](int c) { return inverse[c]; });
+  divide_rows<V, kSize>(
+      upper + first * ld, ld, start, rows, [&](int k, int c) { return M[k * kSize + c]; },
+      [](int) { return 1.0; });
+  for (int c = 0; c < kSize; ++c) {
+    for (int r = c; r < kSize; ++r) {
+      lower[diagonal + c * ld + r] = r == c ? 1.0 : M[c * kSize + r];
+      upper[diagonal + c * ld + r] = M[r * kSize + c];
+    }
+  }
+  return true;
+}
+
+template <typename V>
+SIGNORINI_INLINE bool factor_any_lu_block(double* lower, double* upper, Stride ld, int first,
+                                          int rows, int size, int* exchanges) {
+  switch (size) {
+    case 1: return factor_lu_block<V, 1>(lower, upper, ld, first, rows, exchanges);
+    case 2: return factor_lu_block<V, 2>(lower, upper, ld, first, rows, exchanges);
+    case 3: return factor_lu_block<V, 3>(lower, upper, ld, first, rows, exchanges);
+    case 4: return factor_lu_block<V, 4>(lower, upper, ld, first, rows, exchanges);
+    case 5: return factor_lu_block<V, 5>(lower, upper, ld, first, rows, exchanges);
+    case 6: return factor_lu_block<V, 6>(lower, upper, ld, first, rows, exchanges);
+    case 7: return factor_lu_block<V, 7>(lower, upper, ld, first, rows, exchanges);
+    default: return factor_lu_block<V, 8>(lower, upper, ld, first, rows, exchanges);
+  }
+}
+
+/// Column by column of L and row by row of U (Crout), kBlock at a time.
+template <typename V, int kVectors, int kColumns>
+SIGNORINI_INLINE bool factor_lu_panels(double* lower, double* upper, int ld, int rows, int columns,
+                                       int* exchanges) {
+  for (int first = 0; first < columns; first += kBlock) {
+    const int size = std::min(kBlock, columns - first);
+    if (first > 0) {
+      const Stride from = static_cast<Stride>(first) * ld + first;
+      subtract_block<V, kVectors, kColumns>(lower + from, ld, lower + first, upper + first, ld,
+                                            rows - first, size, first);
+      subtract_block<V, kVectors, kColumns>(upper + from, ld, upper + first, lower + first, ld,
+                                            rows - first, size, first);
+    }
+    if (!factor_any_lu_block<V>(lower, upper, ld, first, rows, size, exchanges)) {
+      return false;
+    }
+  }
+  return true;
 }
 
 /// y -= L x for four columns of L at a time, whole vectors.
@@ -363,25 +508,29 @@ SIGNORINI_INLINE void back_substitute(const double* panel, int ld, int rows, int
   }
 }
 
-// The four functions of a set, compiled for it. kVectors x kColumns tiles fill its registers.
-#define SIGNORINI_KERNELS(set, attribute, V, kVectors, kColumns)                               \
-  attribute bool factor_##set(double* panel, int ld, int rows, int columns) {                  \
-    return factor_panel<V, kVectors, kColumns>(panel, ld, rows, columns);                      \
-  }                                                                                            \
-  attribute void subtract_product_##set(double* square, int ld_square, const double* below,    \
-                                        int ld, int size, int columns) {                       \
-    subtract_square<V, kVectors, kColumns>(square, ld_square, below, ld, size, columns);       \
-  }                                                                                            \
-  attribute void forward_##set(const double* panel, int ld, int rows, int columns,             \
-                               const double* inverse, double* top, double* below) {            \
-    forward_substitute<V>(panel, ld, rows, columns, inverse, top, below);                      \
-  }                                                                                            \
-  attribute void backward_##set(const double* panel, int ld, int rows, int columns,            \
-                                const double* inverse, double* top, const double* below) {     \
-    back_substitute<V>(panel, ld, rows, columns, inverse, top, below);                         \
-  }                                                                                            \
-  constexpr DenseKernels k_##set = {#set, factor_##set, subtract_product_##set, forward_##set, \
-                                    backward_##set};
+// The functions of a set, compiled for it. kVectors x kColumns tiles fill its registers.
+#define SIGNORINI_KERNELS(set, attribute, V, kVectors, kColumns)                                \
+  attribute bool factor_lu_##set(double* lower, double* upper, int ld, int rows, int columns,   \
+                                 int* exchanges) {                                              \
+    return factor_lu_panels<V, kVectors, kColumns>(lower, upper, ld, rows, columns, exchanges); \
+  }                                                                                             \
+  attribute bool factor_##set(double* panel, int ld, int rows, int columns) {                   \
+    return factor_panel<V, kVectors, kColumns>(panel, ld, rows, columns);                       \
+  }                                                                                             \
+  attribute void subtract_product_##set(double* square, int ld_square, const double* A,         \
+                                        const double* B, int ld, int size, int columns) {       \
+    subtract_square<V, kVectors, kColumns>(square, ld_square, A, B, ld, size, columns);         \
+  }                                                                                             \
+  attribute void forward_##set(const double* panel, int ld, int rows, int columns,              \
+                               const double* inverse, double* top, double* below) {             \
+    forward_substitute<V>(panel, ld, rows, columns, inverse, top, below);                       \
+  }                                                                                             \
+  attribute void backward_##set(const double* panel, int ld, int rows, int columns,             \
+                                const double* inverse, double* top, const double* below) {      \
+    back_substitute<V>(panel, ld, rows, columns, inverse, top, below);                          \
+  }                                                                                             \
+  constexpr DenseKernels k_##set = {                                                            \
+      #set, factor_##set, factor_lu_##set, subtract_product_##set, forward_##set, backward_##set};
 
 SIGNORINI_KERNELS(baseline, , Two, 2, 4)
 

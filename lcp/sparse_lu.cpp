@@ -19,40 +19,28 @@ void require_memory_of_lu(Index n, Index entries) {
   ::operator delete(::operator new(static_cast<std::size_t>(bytes + bytes / 4 + kApart)));
 }
 
-void SparseLu::keep_order() {
-  if (!std::holds_alternative<Keeping>(lu_)) {
-    auto& lu = lu_.emplace<Keeping>();
-    lu.isSymmetric(true);
-    lu.setPivotThreshold(0.1);
-  }
-}
-
 void SparseLu::analyse(const View& matrix) {
   const BackEndScope scope;
   require_memory_of_lu(matrix.rows(), matrix.nonZeros());
-  std::visit([&](auto& lu) { lu.analyzePattern(matrix); }, lu_);
+  lu_.analyzePattern(matrix);
 }
 
 bool SparseLu::factor(const View& matrix) {
   const BackEndScope scope;
   require_memory_of_lu(matrix.rows(), matrix.nonZeros());
-  return std::visit(
-      [&](auto& lu) {
-        lu.factorize(matrix);
-        if (lu.info() != Eigen::Success) {
-          return false;
-        }
-        const std::int64_t numbers = std::int64_t{lu.nnzL()} + lu.nnzU();
-        bytes_ = std::max(bytes_, numbers * std::int64_t{sizeof(double)});
-        return true;
-      },
-      lu_);
+  lu_.factorize(matrix);
+  if (lu_.info() != Eigen::Success) {
+    return false;
+  }
+  const std::int64_t numbers = std::int64_t{lu_.nnzL()} + lu_.nnzU();
+  bytes_ = std::max(bytes_, numbers * std::int64_t{sizeof(double)});
+  return true;
 }
 
 void SparseLu::solve(std::span<double> x) {
   const BackEndScope scope;
   Eigen::Map<Vector> right(x.data(), static_cast<Index>(x.size()));
-  std::visit([&](auto& lu) { right = lu.solve(right).eval(); }, lu_);
+  right = lu_.solve(right).eval();
 }
 
 }  // namespace signorini::lcp

@@ -5,7 +5,6 @@
 #include <Eigen/SparseLU>
 #include <cstdint>
 #include <span>
-#include <variant>
 
 namespace signorini::lcp {
 
@@ -24,10 +23,7 @@ class SparseLu {
   /// A compressed matrix in someone else's memory.
   using View = Eigen::Map<const SparseMatrix>;
 
-  /// For matrices with a symmetric pattern, large diagonals, and rows that stand in an order with
-  /// little fill: keeps it, with diagonal pivots down to a tenth of the largest.
-  void keep_order();
-  /// Analyses the pattern, and orders it but after keep_order(). @param matrix n x n, n >= 1
+  /// Orders and analyses the pattern. @param matrix n x n, n >= 1
   void analyse(const View& matrix);
   /// Factors a matrix of the analysed pattern. @return false if it is singular or not finite;
   /// solve() must then not be called.
@@ -40,9 +36,7 @@ class SparseLu {
   void reset_bytes() { bytes_ = 0; }
 
  private:
-  using Ordering = Eigen::SparseLU<SparseMatrix, Eigen::COLAMDOrdering<int>>;
-  using Keeping = Eigen::SparseLU<SparseMatrix, Eigen::NaturalOrdering<int>>;
-  std::variant<Ordering, Keeping> lu_;
+  Eigen::SparseLU<SparseMatrix> lu_;
   std::int64_t bytes_ = 0;
 };
 

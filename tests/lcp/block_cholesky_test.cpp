@@ -47,8 +47,8 @@ TEST_P(EveryInstructionSet, PanelTimesItsTransposeAndTheRestGiveTheMatrix) {
         std::copy_n(A.col(c).data() + c, rows - c, panel.data() + c * ld + c);
       }
       ASSERT_TRUE(kernels.factor(panel.data(), ld, rows, columns));
-      kernels.subtract_product(square.data(), ld_square, panel.data() + columns, ld, below,
-                               columns);
+      kernels.subtract_product(square.data(), ld_square, panel.data() + columns,
+                               panel.data() + columns, ld, below, columns);
       Matrix L = Matrix::Zero(rows, columns);
       for (int c = 0; c < columns; ++c) {
         std::copy_n(panel.data() + c * ld + c, rows - c, L.col(c).data() + c);
