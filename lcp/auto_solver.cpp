@@ -15,6 +15,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Index kSmall = 100;                 // rows up to which dense pivoting is the fastest
 constexpr Index kSmallCold = 48;              // the same, of a factored M without a start
+constexpr Index kSingleContactRows = 180;     // up to which a guess and pivots beat Newton's steps
 constexpr Index kStructuredLemkeRows = 2000;  // a pivot costs up to n^2 / 2
 constexpr Index kLemkeRows = 1000;            // the same, with larger constants
 constexpr double kMassRatioForSweeps = 1e3;   // above it sweeps stall
@@ -40,6 +41,19 @@ void add(int& sum, int counter) {
   if (counter >= 0) {
     sum = std::max(sum, 0) + counter;
   }
+}
+
+/// Whether no two rows that follow each other are on the same bodies: one contact a pair.
+bool has_single_contacts(const FactoredMatrix& A) {
+  const auto same_block = [](const FactoredMatrix::Entry& a, const FactoredMatrix::Entry& b) {
+    return a.block == b.block;
+  };
+  for (int i = 1; i < A.rows(); ++i) {
+    if (std::ranges::equal(A.entries(i - 1), A.entries(i), same_block)) {
+      return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace
@@ -70,12 +84,19 @@ void AutoSolver::choose(const Problem& problem) {
     return;
   }
   const bool symmetric = SymmetricLcp::asymmetry(problem).size <= SymmetricLcp::kMostAsymmetry;
+  const bool single = factored && n > kSmallCold && n <= kSingleContactRows && problem.is_lcp() &&
+                      has_single_contacts(std::get<FactoredMatrix>(problem.M));
+  if (single) {
+    chain_.push_back({"structured-lemke", "one contact a pair of bodies", -1, true});
+  }
   if (symmetric && n <= kSmall) {
     if (factored && !has_start_ && n > kSmallCold) {
       chain_.push_back({"interior-point", "factored, from no start"});
     }
     chain_.push_back({"dantzig", "symmetric and small", -1, true});
-    chain_.push_back({"structured-lemke", "symmetric and small", -1, true});
+    if (!single) {
+      chain_.push_back({"structured-lemke", "symmetric and small", -1, true});
+    }
   } else if (factored) {
     const bool sweeps_may_win =
         settings_.tolerance >= kRoughTolerance || n > kRowsForAccurateSweeps;
@@ -89,7 +110,7 @@ void AutoSolver::choose(const Problem& problem) {
     chain_.push_back({"interior-point", symmetric ? "symmetric and large" : "not symmetric"});
   }
   chain_.push_back({"alart-curnier", symmetric ? "symmetric" : "not symmetric"});
-  if (symmetric && n > kSmall && n <= kStructuredLemkeRows) {
+  if (symmetric && !single && n > kSmall && n <= kStructuredLemkeRows) {
     chain_.push_back({"structured-lemke", "a vertex, or a proof that there is none", -1, true});
   }
   if (n <= kLemkeRows) {

@@ -30,6 +30,8 @@ struct AutoSettings : SolverSettings {
 /// | friction cones | sticking (factored M, from a start) or cone-interior-point (factored M, from
 /// none; the associated law, n > 100), frictionless (factored M, from none, up to 300 rows that are
 /// not tangential), alart-curnier, frictionless (if it was not tried, up to 2000 such rows), nsgs |
+/// | LCP with a factored M, 48 < n <= 180, no two rows that follow each other on the same bodies |
+/// structured-lemke, then as below |
 /// | symmetric M, n <= 100 | interior-point (factored M, from no start, n > 48), dantzig,
 /// structured-lemke, alart-curnier, lemke, pgs |
 /// | factored M, n > 100 | nncg, for a few sweeps and then if they promise to end soon (with a
@@ -49,6 +51,10 @@ struct AutoSettings : SolverSettings {
 /// - factored M, up to 100 rows, by time (families, mass ratios 1 to 1e6): from no start
 ///   interior-point takes 1.2 times dantzig's at 40 rows, the same at 48, 0.7 at 64, 0.4 at 100;
 ///   from a near one 1.7, 1.3, 1.2 and 0.6;
+/// - one contact a pair of bodies (piles of spheres, mass ratios 1 to 1e6), by time: the guess of
+///   structured-lemke's sweeps is 0 to 60 pivots off where M is regular; it takes 0.3 to 0.9 of
+///   interior-point's time at 64 and 100 rows, 0.6 to 1 at 160, 0.5 to 1.4 at 200 (the analysis of
+///   a new pattern included in both: 0.9, 0.8, 1);
 /// - factored M: interior-point 2 to 24; block-pivoting 7 to 83 and with mass ratios of 1e6 up to
 ///   2205, so it is not tried;
 /// - associated law, M given whole, 8 real problems with n > 600: cone-interior-point 19 to 43,

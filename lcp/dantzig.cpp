@@ -75,7 +75,7 @@ Status Dantzig::iterate(const Problem& problem, const Vector* warm_start, const 
 bool Dantzig::start(const Problem& problem, const Vector* warm_start) {
   const int n = scaled_.size();
   basis_ = &tableau_;
-  if (!scaled_.is_dense()) {
+  if (!scaled_.is_dense() && n > kTableauRows) {
     basis_ = &factor_;
   }
   basis_->reset(scaled_);

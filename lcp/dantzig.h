@@ -60,10 +60,12 @@ struct DantzigSettings : SolverSettings {
 /// for example).
 ///
 /// Cost: between n/2 and 2 n exchanges for contact problems, exponential at worst. Each n^2/2
-/// multiply-adds (n <= SymmetricLcp::kDenseRows or full M: PrincipalTableau) or two passes over a
-/// sparse factor (PrincipalFactor). Memory n^2 or the factor.
+/// multiply-adds (n <= kTableauRows or full M: PrincipalTableau) or two passes over a sparse factor
+/// (PrincipalFactor). Memory n^2 or the factor.
 class Dantzig : public Solver {
  public:
+  static constexpr int kTableauRows = 160;
+
   /// @throws std::invalid_argument for settings out of range.
   explicit Dantzig(const DantzigSettings& settings = {});
 

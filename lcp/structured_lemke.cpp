@@ -144,7 +144,7 @@ void StructuredLemke::sweep() {
 bool StructuredLemke::start(int attempt) {
   const int n = scaled_.size();
   basis_ = &tableau_;
-  if (!scaled_.is_dense()) {
+  if (!scaled_.is_dense() && n > kTableauRows) {
     basis_ = &factor_;
   }
   basis_->reset(scaled_);

@@ -52,9 +52,14 @@ struct StructuredLemkeSettings : SolverSettings {
 /// kNumericalBreakdown.
 ///
 /// Cost: from z = 0 between n/2 and 2 n pivots for contact problems, a fraction of that with a good
-/// first basis; each pivot one column of PrincipalTableau (small or full M) or PrincipalFactor.
+/// first basis; each pivot one column of PrincipalTableau (n <= kTableauRows or full M) or
+/// PrincipalFactor.
 class StructuredLemke : public Solver {
  public:
+  /// The first basis costs as many exchanges as it has rows in a tableau, one factorisation in a
+  /// factor: few rows are enough for that to pay.
+  static constexpr int kTableauRows = 40;
+
   /// @throws std::invalid_argument for settings out of range.
   explicit StructuredLemke(const StructuredLemkeSettings& settings = {});
 

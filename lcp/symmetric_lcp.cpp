@@ -9,7 +9,7 @@ namespace signorini::lcp {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kSparseBelow = 0.25;
+constexpr double kSparseBelow = 0.2;
 
 /// The power of two 2^-round(log2(d) / 2): d times its square is in [1/2, 2].
 double root_scale(double d) {
@@ -89,7 +89,7 @@ void SymmetricLcp::copy(const Matrix& M) {
 
 void SymmetricLcp::copy(const SparseMatrix& M) {
   const double size = static_cast<double>(n_) * n_;
-  is_dense_ = n_ <= kDenseRows || static_cast<double>(M.nonZeros()) > kSparseBelow * size;
+  is_dense_ = static_cast<double>(M.nonZeros()) > kSparseBelow * size;
   if (is_dense_) {
     dense_.assign(static_cast<std::size_t>(n_) * n_, 0.0);
   }
@@ -126,7 +126,7 @@ void SymmetricLcp::copy(const FactoredMatrix& A) {
     use_start_[b + 1] += use_start_[b];
     largest = std::max(largest, A.mass.dimension(b));
   }
-  is_dense_ = n_ <= kDenseRows || filled > kSparseBelow * static_cast<double>(n_) * n_;
+  is_dense_ = filled > kSparseBelow * static_cast<double>(n_) * n_;
   use_row_.resize(uses);
   use_values_.resize(uses);
   place_.assign(use_start_.begin(), use_start_.end() - 1);

@@ -16,12 +16,10 @@ namespace signorini::lcp {
 /// S_i and t powers of two (the scaled problem is the caller's to the bit), 1/2 < M'_ii < 2 where
 /// M_ii > 0, S_i = 1 elsewhere, |q'|_inf in [1, 2). Bounds are scaled like z.
 ///
-/// M' is held whole: dense up to kDenseRows rows or if more than a quarter of it is filled, else by
+/// M' is held whole: dense if it was given so or more than a fifth of it is filled, else by
 /// columns. A factored M is formed here, column by column, without temporary storage.
 class SymmetricLcp {
  public:
-  static constexpr int kDenseRows = 160;
-
   /// How far M is from symmetric: max |M_ij - M_ji| / sqrt(M_ii M_jj), and where; 0 for a factored
   /// M. A NaN is not judged.
   struct Asymmetry {
