@@ -207,18 +207,32 @@ SIGNORINI_INLINE bool factor_any_block(double* panel, Stride ld, int first, int 
   }
 }
 
+/// Columns [from, to) of C -= A B^T over the columns [left, right) of panels A and B, lower
+/// trapezoid. from is a multiple of kBlock: whole vectors stay inside the column.
+template <typename V, int kVectors, int kColumns>
+SIGNORINI_INLINE void subtract_left(double* C, const double* A, const double* B, Stride ld,
+                                    int rows, int from, int to, int left, int right) {
+  for (int j = from; j < to && left < right; j += kBlock) {
+    subtract_block<V, kVectors, kColumns>(C + j * ld + j, ld, A + left * ld + j, B + left * ld + j,
+                                          ld, rows - j, std::min(kBlock, to - j), right - left);
+  }
+}
+
+/// Column by column in blocks of kDepth, whose products with themselves are subtracted from what is
+/// right of them once they are factored: a wide panel goes through the caches once a block.
 template <typename V, int kVectors, int kColumns>
 SIGNORINI_INLINE bool factor_panel(double* panel, int ld, int rows, int columns) {
-  for (int first = 0; first < columns; first += kBlock) {
-    const int size = std::min(kBlock, columns - first);
-    if (first > 0) {  // first is a multiple of kBlock: whole vectors stay inside the column
-      subtract_block<V, kVectors, kColumns>(panel + static_cast<Stride>(first) * ld + first, ld,
-                                            panel + first, panel + first, ld, rows - first, size,
-                                            first);
+  for (int outer = 0; outer < columns; outer += kDepth) {
+    const int end = std::min(outer + kDepth, columns);
+    for (int first = outer; first < end; first += kBlock) {
+      const int next = std::min(first + kBlock, end);
+      subtract_left<V, kVectors, kColumns>(panel, panel, panel, ld, rows, first, next, outer,
+                                           first);
+      if (!factor_any_block<V>(panel, ld, first, rows, next - first)) {
+        return false;
+      }
     }
-    if (!factor_any_block<V>(panel, ld, first, rows, size)) {
-      return false;
-    }
+    subtract_left<V, kVectors, kColumns>(panel, panel, panel, ld, rows, end, columns, outer, end);
   }
   return true;
 }
@@ -361,22 +375,24 @@ SIGNORINI_INLINE bool factor_any_lu_block(double* lower, double* upper, Stride l
   }
 }
 
-/// Column by column of L and row by row of U (Crout), kBlock at a time.
+/// Column by column of L and row by row of U (Crout), kBlock at a time, in blocks of kDepth.
 template <typename V, int kVectors, int kColumns>
 SIGNORINI_INLINE bool factor_lu_panels(double* lower, double* upper, int ld, int rows, int columns,
                                        int* exchanges) {
-  for (int first = 0; first < columns; first += kBlock) {
-    const int size = std::min(kBlock, columns - first);
-    if (first > 0) {
-      const Stride from = static_cast<Stride>(first) * ld + first;
-      subtract_block<V, kVectors, kColumns>(lower + from, ld, lower + first, upper + first, ld,
-                                            rows - first, size, first);
-      subtract_block<V, kVectors, kColumns>(upper + from, ld, upper + first, lower + first, ld,
-                                            rows - first, size, first);
+  const auto subtract = [&](int from, int to, int left, int right) __attribute__((always_inline)) {
+    subtract_left<V, kVectors, kColumns>(lower, lower, upper, ld, rows, from, to, left, right);
+    subtract_left<V, kVectors, kColumns>(upper, upper, lower, ld, rows, from, to, left, right);
+  };
+  for (int outer = 0; outer < columns; outer += kDepth) {
+    const int end = std::min(outer + kDepth, columns);
+    for (int first = outer; first < end; first += kBlock) {
+      const int next = std::min(first + kBlock, end);
+      subtract(first, next, outer, first);
+      if (!factor_any_lu_block<V>(lower, upper, ld, first, rows, next - first, exchanges)) {
+        return false;
+      }
     }
-    if (!factor_any_lu_block<V>(lower, upper, ld, first, rows, size, exchanges)) {
-      return false;
-    }
+    subtract(end, columns, outer, end);
   }
   return true;
 }

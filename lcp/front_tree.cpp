@@ -17,6 +17,21 @@ int leading_dimension(int rows) {
   return padded % 64 == 0 ? padded + kPadding : padded;
 }
 
+/// Calls visit(first, count) for the numbers of the columns that are on or below the diagonal, with
+/// what the kernels touch above it: all at once where that is little.
+template <typename Visit>
+void visit_trapezoid(int rows, int columns, int ld, const Visit& visit) {
+  constexpr int kFew = 64;
+  if (columns <= kFew) {
+    visit(0, static_cast<std::ptrdiff_t>(ld) * columns);
+    return;
+  }
+  for (int c = 0; c < columns; ++c) {
+    const int first = c / kPadding * kPadding;
+    visit(static_cast<std::ptrdiff_t>(c) * ld + first, std::min(rows + kPadding, ld) - first);
+  }
+}
+
 /// A number of 64 bits from one, without pattern (splitmix64).
 std::uint64_t mix(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15ULL;
@@ -350,8 +365,12 @@ void FrontTree::assemble(int s, const Scatter& scatter, const double* values, do
   const Front& front = fronts_[s];
   double* panel = panels + front.panel;
   double* update = stack + front.update;
-  std::fill_n(panel, static_cast<std::ptrdiff_t>(front.ld) * front.columns, 0.0);
-  std::fill_n(update, static_cast<std::ptrdiff_t>(front.ld_update) * front.below(), 0.0);
+  visit_trapezoid(
+      front.rows, front.columns, front.ld,
+      [&](std::ptrdiff_t at, std::ptrdiff_t count) { std::fill_n(panel + at, count, 0.0); });
+  visit_trapezoid(
+      front.below(), front.below(), front.ld_update,
+      [&](std::ptrdiff_t at, std::ptrdiff_t count) { std::fill_n(update + at, count, 0.0); });
   for (int k = scatter.start[s]; k < scatter.start[s + 1]; ++k) {
     panel[scatter.entries[k].target] = values[scatter.entries[k].source];
   }
@@ -362,10 +381,15 @@ void FrontTree::assemble(int s, const Scatter& scatter, const double* values, do
 
 void FrontTree::move_update(int s, double* stack) const {
   const Front& front = fronts_[s];
-  if (front.moved_update != front.update && front.below() > 0) {
-    const std::size_t size = static_cast<std::size_t>(front.ld_update) * front.below();
-    std::memmove(stack + front.moved_update, stack + front.update, size * sizeof(double));
+  if (front.moved_update == front.update) {
+    return;
   }
+  double* to = stack + front.moved_update;  // below what is moved
+  const double* from = stack + front.update;
+  visit_trapezoid(front.below(), front.below(), front.ld_update,
+                  [&](std::ptrdiff_t at, std::ptrdiff_t count) {
+                    std::memmove(to + at, from + at, count * sizeof(double));
+                  });
 }
 
 void FrontTree::permute(const double* x, double* ordered) const {
