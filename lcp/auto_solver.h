@@ -30,16 +30,14 @@ struct AutoSettings : SolverSettings {
 /// | friction cones | sticking (factored M, from a start) or cone-interior-point (factored M, from
 /// none; the associated law, n > 100), frictionless (factored M, from none, up to 300 rows that are
 /// not tangential), alart-curnier, frictionless (if it was not tried, up to 2000 such rows), nsgs |
-/// | LCP with a factored M, 48 < n <= 180, no two rows that follow each other on the same bodies |
-/// structured-lemke, then as below |
-/// | symmetric M, n <= 100 | interior-point (factored M, from no start, n > 48), dantzig,
-/// structured-lemke, alart-curnier, lemke, pgs |
-/// | factored M, n > 100 | nncg, for a few sweeps and then if they promise to end soon (with a
-/// tolerance of 1e-5 or more, or n > 5000; mass ratio <= 1e3), interior-point, alart-curnier,
-/// structured-lemke, lemke, pgs |
-/// | symmetric M given whole, n > 100 | block-pivoting (50 sets), interior-point, alart-curnier,
-/// structured-lemke, lemke, pgs |
-/// | other M | interior-point, alart-curnier, lemke, pgs |
+/// | LCP with a factored M, 48 < n <= 180, at most one row in eight on the bodies of the one before
+/// | structured-lemke (behind the sweeps of the row for n > 100), then as below | | symmetric M, n
+/// <= 100 | interior-point (factored M, from no start, n > 48), dantzig, structured-lemke,
+/// alart-curnier, lemke, pgs | | factored M, n > 100 | nncg, for a few sweeps and then if they
+/// promise to end soon (with a tolerance of 1e-5 or more, or n > 5000; mass ratio <= 1e3),
+/// interior-point, alart-curnier, structured-lemke, lemke, pgs | | symmetric M given whole, n > 100
+/// | block-pivoting (50 sets), interior-point, alart-curnier, structured-lemke, lemke, pgs | |
+/// other M | interior-point, alart-curnier, lemke, pgs |
 ///
 /// Symmetric is what SymmetricLcp takes: to 1e-2, since measured matrices are printed with few
 /// digits. The order is by factorisations counted (real problems and generated families, to 1e-8):

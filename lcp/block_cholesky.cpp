@@ -14,15 +14,17 @@ SparsePattern pattern_of(const SparseMatrix& lower) {
 BlockCholesky::BlockCholesky(const DenseKernels& kernels) : kernels_(kernels) {}
 
 void BlockCholesky::analyse(const SparseMatrix& lower) {
-  if (!tree_.analyse(pattern_of(lower))) {
+  if (tree_.knows(pattern_of(lower))) {
     return;
   }
+  tree_.analyse(pattern_of(lower));
   tree_.find_scatter(pattern_of(lower), FrontTree::Triangle::kLower, scatter_);
   panels_.resize(tree_.panels_size());
   stack_.resize(tree_.stack_size());
   work_.resize(tree_.size() + DenseKernels::kPadding);
   inverse_.resize(tree_.size());
   below_.resize(tree_.below_size());
+  tree_.keep(pattern_of(lower));
 }
 
 bool BlockCholesky::factor(const SparseMatrix& lower) {

@@ -15,9 +15,10 @@ SparsePattern pattern_of(const BlockLu::View& matrix) {
 BlockLu::BlockLu(const DenseKernels& kernels) : kernels_(kernels) {}
 
 void BlockLu::analyse(const View& matrix) {
-  if (!tree_.analyse(pattern_of(matrix))) {
+  if (tree_.knows(pattern_of(matrix))) {
     return;
   }
+  tree_.analyse(pattern_of(matrix));
   tree_.find_scatter(pattern_of(matrix), FrontTree::Triangle::kLower, lower_scatter_);
   tree_.find_scatter(pattern_of(matrix), FrontTree::Triangle::kUpper, upper_scatter_);
   lower_.resize(tree_.panels_size());
@@ -29,6 +30,7 @@ void BlockLu::analyse(const View& matrix) {
   inverse_.resize(tree_.size());
   work_.resize(tree_.size() + DenseKernels::kPadding);
   below_.resize(tree_.below_size());
+  tree_.keep(pattern_of(matrix));
 }
 
 bool BlockLu::factor(const View& matrix) {

@@ -228,6 +228,9 @@ bool BodyNewtonSystem::factor(const std::vector<Block>& A, const std::vector<Blo
 
 bool BodyNewtonSystem::factor_freely() {
   pivots_freely_ = true;
+  if (rows_->degrees_of_freedom() > kFreeColumns) {
+    return false;
+  }
   lu_.analyse(matrix());
   return lu_.factor(matrix());
 }
@@ -262,15 +265,22 @@ bool BodyNewtonSystem::divide(Vector& y) {
   const auto numbers = [](Vector& x) {
     return std::span(x.data(), static_cast<std::size_t>(x.size()));
   };
+  if (!y.allFinite()) {
+    return false;
+  }
   right_ = y;
   if (!pivots_freely_) {
     block_lu_.solve(numbers(y));
-    for (int k = 0; k <= kRefinements; ++k) {
-      if (backward_error(right_, y) <= kEnough) {
-        return true;
+    for (int k = 0; backward_error(right_, y) > kEnough; ++k) {
+      if (k == kRefinements) {
+        pivots_freely_ = true;
+        break;
       }
       block_lu_.solve(numbers(residual_));
       y += residual_;
+    }
+    if (!pivots_freely_) {
+      return true;
     }
     if (!factor_freely()) {
       return false;

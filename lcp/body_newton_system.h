@@ -19,10 +19,13 @@ namespace signorini::lcp {
 /// The matrix has a row a degree of freedom of the bodies, however many contacts there are, one
 /// pattern for all steps, and is factored by BlockLu, since D is not symmetric where contacts
 /// slide. y is refined to a backward error of 1e-12, row by row; where that cannot be had, SparseLu
-/// factors the matrix, which pivots as it needs. alpha > 0 keeps K invertible; the numbers of dx
-/// lose digits as alpha goes to 0.
+/// factors a matrix of up to kFreeColumns columns, pivoting as it needs. alpha > 0 keeps K
+/// invertible; the numbers of dx lose digits as alpha goes to 0.
 class BodyNewtonSystem {
  public:
+  /// What Eigen's LU, in an order of its own, factors in about a second.
+  static constexpr Index kFreeColumns = 10000;
+
   /// Keeps rows and function, whose groups must be the same.
   void set(const WhitenedRows& rows, const AlartCurnierFunction& function);
 
@@ -35,7 +38,7 @@ class BodyNewtonSystem {
   /// @return false if the step is not finite; dx is then of no use.
   [[nodiscard]] bool solve(const Vector& F, Vector& dx);
 
-  /// The most that the back-end held since set().
+  /// What the factors hold.
   [[nodiscard]] std::int64_t factor_bytes() const {
     return static_cast<std::int64_t>(block_lu_.bytes()) + lu_.bytes();
   }

@@ -53,7 +53,7 @@ struct ConeInteriorPointSettings : SolverSettings {
 /// the path finds nothing better; the path always starts cold. Cost: one sparse LU a step, in body
 /// space of I + G^T D G for a factored M (BodyNewtonSystem), otherwise as NewtonSystem does it, and
 /// two solves with it; statistics: iterations are interior point steps, factorizations those and
-/// the polish's, factor_bytes what the sparse LU held. A problem of a pattern it has seen before
+/// the polish's, factor_bytes what the sparse LU held. A problem of the last one's pattern
 /// allocates nothing in body space, else what Eigen's LU takes (unless time_limit is set: the
 /// polish then gets what is left of it).
 class ConeInteriorPoint : public Solver {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <limits>
+#include <new>
 #include <numeric>
 
 namespace signorini::lcp {
@@ -17,8 +19,9 @@ int leading_dimension(int rows) {
   return padded % 64 == 0 ? padded + kPadding : padded;
 }
 
-/// Calls visit(first, count) for the numbers of the columns that are on or below the diagonal, with
-/// what the kernels touch above it: all at once where that is little.
+/// Calls visit(first, count) for the numbers of the columns that are on or below the diagonal, from
+/// a multiple of kPadding on: all at once where that is little. What else the kernels read reaches
+/// scratch alone.
 template <typename Visit>
 void visit_trapezoid(int rows, int columns, int ld, const Visit& visit) {
   constexpr int kFew = 64;
@@ -42,24 +45,25 @@ std::uint64_t mix(std::uint64_t x) {
 
 }  // namespace
 
-bool FrontTree::same_pattern(const SparsePattern& pattern) const {
+bool FrontTree::knows(const SparsePattern& pattern) const {
   return pattern_outer_.size() == static_cast<std::size_t>(pattern.columns) + 1 &&
          pattern_inner_.size() == static_cast<std::size_t>(pattern.entries()) &&
          std::equal(pattern_outer_.begin(), pattern_outer_.end(), pattern.outer) &&
          std::equal(pattern_inner_.begin(), pattern_inner_.end(), pattern.inner);
 }
 
-bool FrontTree::analyse(const SparsePattern& pattern) {
-  if (same_pattern(pattern)) {
-    return false;
-  }
-  pattern_outer_.assign(pattern.outer, pattern.outer + pattern.columns + 1);
+void FrontTree::keep(const SparsePattern& pattern) {
   pattern_inner_.assign(pattern.inner, pattern.inner + pattern.entries());
+  pattern_outer_.assign(pattern.outer, pattern.outer + pattern.columns + 1);
+}
+
+void FrontTree::analyse(const SparsePattern& pattern) {
+  pattern_outer_.clear();
   lower_start_.resize(pattern.columns);
   for (int j = 0; j < pattern.columns; ++j) {
     const int* end = pattern.inner + pattern.outer[j + 1];
-    lower_start_[j] = static_cast<int>(std::lower_bound(pattern.inner + pattern.outer[j], end, j) -
-                                       pattern.inner);
+    const int* first = std::lower_bound(pattern.inner + pattern.outer[j], end, j);
+    lower_start_[j] = static_cast<int>(first - pattern.inner);
   }
   find_blocks(pattern);
   find_graph(pattern);
@@ -67,7 +71,6 @@ bool FrontTree::analyse(const SparsePattern& pattern) {
   lay_out_fronts();
   lay_out_stack();
   find_runs();
-  return true;
 }
 
 /// Cuts the columns into blocks: column j + 1 continues the block of j if both have the same rows
@@ -185,6 +188,9 @@ void FrontTree::lay_out_fronts() {
     }
     front.rows = front.columns + below;
     front.ld = leading_dimension(front.rows);
+    if (std::int64_t{front.ld} * front.columns > std::numeric_limits<int>::max()) {
+      throw std::bad_alloc();  // 17 GB for one front, which Scatter does not count
+    }
     front.ld_update = leading_dimension(below);
     front.panel = panel;
     panel += static_cast<std::ptrdiff_t>(front.ld) * front.columns;
@@ -278,7 +284,6 @@ void FrontTree::find_runs() {
   const int count = supernodes_->count();
   global_runs_.clear();
   parent_runs_.clear();
-  place_.resize(block_of_.size());  // the parent's row of a column
   for (int s = 0; s < count; ++s) {
     Front& front = fronts_[s];
     front.global_run = static_cast<int>(global_runs_.size());

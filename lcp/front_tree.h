@@ -60,8 +60,12 @@ class FrontTree {
   };
   enum class Triangle { kLower, kUpper };
 
-  /// Does nothing when the pattern is the last one's, and says so: false.
-  bool analyse(const SparsePattern& pattern);
+  /// Whether the pattern is the last that was kept.
+  [[nodiscard]] bool knows(const SparsePattern& pattern) const;
+  void analyse(const SparsePattern& pattern);
+  /// To be called once all that depends on the analysis is there: where memory ends before, the
+  /// next analysis starts anew.
+  void keep(const SparsePattern& pattern);
   /// Where the entries of a matrix of the analysed pattern go that are in the triangle once it is
   /// permuted: of a lower triangle alone all are in kLower.
   void find_scatter(const SparsePattern& pattern, Triangle triangle, Scatter& scatter);
@@ -91,7 +95,6 @@ class FrontTree {
   [[nodiscard]] std::size_t below_size() const { return below_size_; }
 
  private:
-  [[nodiscard]] bool same_pattern(const SparsePattern& pattern) const;
   void find_blocks(const SparsePattern& pattern);
   void find_graph(const SparsePattern& pattern);
   void lay_out_fronts();

@@ -39,7 +39,7 @@ class ScaledGroups {
     return in_body_space_ ? body_system_.solve(F, dx) : system_.solve(F, dx);
   }
 
-  /// The most that the back-end held since set(); 0 if all matrices were dense.
+  /// What the factors hold, or held at most since set(); 0 if all matrices were dense.
   [[nodiscard]] std::int64_t factor_bytes() const {
     return in_body_space_ ? body_system_.factor_bytes() : system_.factor_bytes();
   }

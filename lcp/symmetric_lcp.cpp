@@ -25,6 +25,18 @@ double relative_difference(double one, double other, double d_i, double d_j) {
   return difference > 0.0 ? difference / std::sqrt(std::abs(d_i)) / std::sqrt(std::abs(d_j)) : 0.0;
 }
 
+/// Whether an entry has no partner across the diagonal: sparse factors want a symmetric pattern.
+bool has_lone_entry(const SparseMatrix& M) {
+  for (Index j = 0; j < M.outerSize(); ++j) {
+    for (SparseMatrix::InnerIterator it(M, j); it; ++it) {
+      if (it.value() != 0.0 && it.row() != j && M.coeff(j, it.row()) == 0.0) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 double entry(const Problem& problem, Index i, Index j) {
   const auto* dense = std::get_if<Matrix>(&problem.M);
   return dense != nullptr ? (*dense)(i, j) : std::get<SparseMatrix>(problem.M).coeff(i, j);
@@ -88,6 +100,14 @@ void SymmetricLcp::copy(const Matrix& M) {
 }
 
 void SymmetricLcp::copy(const SparseMatrix& M) {
+  if (has_lone_entry(M)) {
+    copy_entries(SparseMatrix(M + 0.0 * SparseMatrix(M.transpose())));
+  } else {
+    copy_entries(M);
+  }
+}
+
+void SymmetricLcp::copy_entries(const SparseMatrix& M) {
   const double size = static_cast<double>(n_) * n_;
   is_dense_ = static_cast<double>(M.nonZeros()) > kSparseBelow * size;
   if (is_dense_) {

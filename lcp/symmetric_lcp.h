@@ -36,8 +36,8 @@ class SymmetricLcp {
 
   /// Copies and scales M, q, lower and upper; coupled limits are left to the caller. A nearly
   /// symmetric M stays as it is: products are with M, factors read one of its triangles, and
-  /// refinement makes up for the difference. Allocates nothing that an equal-size problem has used
-  /// before.
+  /// refinement makes up for the difference. Allocates nothing that a problem with as many rows and
+  /// entries has used before, but for a sparse M whose pattern is not symmetric.
   /// @return false if a scaled number is not finite.
   bool assign(const Problem& problem);
 
@@ -78,6 +78,7 @@ class SymmetricLcp {
  private:
   void copy(const Matrix& M);
   void copy(const SparseMatrix& M);
+  void copy_entries(const SparseMatrix& M);
   void copy(const FactoredMatrix& A);
   void scale_matrix();
   bool scale_vectors(const Problem& problem);

@@ -334,7 +334,7 @@ Problem chain(unsigned seed, int bodies, int contacts_each) {
 }
 
 TEST(AlartCurnier, TakesCoupledLimitsInBodySpaceAsItDoesFormed) {
-  for (const int bodies : {4, 12}) {  // dense and sparse
+  for (const int bodies : {4, 12}) {
     for (unsigned seed = 1; seed <= 10; ++seed) {
       SCOPED_TRACE(std::to_string(bodies) + " bodies, seed " + std::to_string(seed));
       Problem problem = chain(seed, bodies, 1);

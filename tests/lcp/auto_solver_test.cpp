@@ -103,6 +103,19 @@ TEST(AutoSolver, DoesNotSweepWhereMassesDiffer) {
   EXPECT_EQ(result.attempts.front().solver, "interior-point");
 }
 
+TEST(AutoSolver, PivotsFromAGuessWhereAPairOfBodiesHasOneContact) {
+  for (const int contacts : {49, 64, 160}) {
+    const Result result = solve(family("spheres", contacts));
+    EXPECT_EQ(result.status, Status::kSolved);
+    EXPECT_EQ(result.solver, "auto: structured-lemke");
+    EXPECT_EQ(result.attempts.front().reason, "one contact a pair of bodies");
+    EXPECT_LE(result.statistics.pivots, 2 * contacts);
+  }
+  EXPECT_NE(solve(family("spheres", 48)).solver, "auto: structured-lemke");
+  EXPECT_NE(solve(family("spheres", 181)).solver, "auto: structured-lemke");
+  EXPECT_NE(solve(family("tower4", 16)).solver, "auto: structured-lemke");
+}
+
 TEST(AutoSolver, StatisticsAreSumsOverTheAttempts) {
   AutoSettings settings;
   settings.tolerance = 1e-5;
