@@ -262,7 +262,8 @@ TEST_P(WithoutADiagonal, IsSolvedWithOtherPivots) {
   const std::vector<AlartCurnierFunction::Block> A(
       6, AlartCurnierFunction::Block::Identity() * (1.0 / D - kAlpha));
   const std::vector<AlartCurnierFunction::Block> B(6, AlartCurnierFunction::Block::Identity());
-  ASSERT_TRUE(system.factor(A, B, {}, kAlpha));
+  const std::vector<AlartCurnierFunction::Coupling> none;
+  ASSERT_TRUE(system.factor(A, B, none, kAlpha));
   const Vector F = Vector::LinSpaced(6, 1.0, 2.0);
   Vector dx;
   ASSERT_TRUE(system.solve(F, dx));
