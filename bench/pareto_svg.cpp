@@ -113,9 +113,21 @@ std::string panel_svg(std::span<const LevelScore> scores, const ProblemClass& wh
         look.shape, x.at(dot.mean_seconds), y.at(dot.level), look.colour, dot.solver, dot.library,
         dot.level, dot.mean_seconds);
   }
+  // The front goes right and down: a label that would lie on the one before goes below it.
+  constexpr double kLabelWidth = 130.0;
+  constexpr double kLabelHeight = 11.0;
+  double last_left = -kLabelWidth;
+  double last_base = 0.0;
   for (const LevelScore& score : front) {
-    svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"10\">{}</text>\n",
-                       x.at(score.mean_seconds) + 7.0, y.at(score.level) - 6.0, score.solver);
+    const double left = x.at(score.mean_seconds) + 7.0;
+    double base = y.at(score.level) - 6.0;
+    if (left < last_left + kLabelWidth) {
+      base = std::max(base, last_base + kLabelHeight);
+    }
+    svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"10\">{}</text>\n", left, base,
+                       score.solver);
+    last_left = left;
+    last_base = base;
   }
   return svg;
 }

@@ -102,6 +102,26 @@ TEST(Tradeoff, PageRecommendsOfOursTheFastestThatSolvesAllAndNamesFasterPeers) {
   EXPECT_NE(pareto_svg(scores, "t").find("theirs"), std::string::npos);
 }
 
+/// Two settings of nearly one time and error on the front.
+TEST(Tradeoff, LabelsOfTheFrontDoNotLieOnEachOther) {
+  std::vector<LevelScore> scores(3);
+  for (std::size_t k = 0; k < scores.size(); ++k) {
+    scores[k].which = {.form = "stands", .size = 16, .unit = "bodies"};
+    scores[k].solver = std::string(1, static_cast<char>('a' + k));
+    scores[k].problems = scores[k].solved = 1;
+  }
+  scores[0].level = 1e-2, scores[0].mean_seconds = 1.0;
+  scores[1].level = 0.99e-2, scores[1].mean_seconds = 1.01;
+  scores[2].level = 1e-9, scores[2].mean_seconds = 100.0;
+  const std::string svg = pareto_svg(scores, "t");
+  const auto base_of = [&svg](const std::string& label) {
+    const std::size_t end = svg.find("\" font-size=\"10\">" + label + "<");
+    return std::stod(svg.substr(svg.rfind("y=\"", end) + 3));
+  };
+  EXPECT_GE(base_of("b"), base_of("a") + 10.0);
+  EXPECT_GT(base_of("c"), base_of("b") + 100.0);
+}
+
 TEST(Tradeoff, AProfileOfAPartialStudyHasTheProblemsThatEverybodyTried) {
   std::vector<TradeRun> runs = trade_runs(two_positions(), 5.0);
   std::erase_if(
