@@ -45,7 +45,7 @@ struct AlartCurnierSettings : SolverSettings {
 /// Cost: one sparse LU a Newton step, in body space for a factored M (BodyNewtonSystem), else of
 /// the active rows (NewtonSystem; dense up to its kDenseRows); statistics: iterations are proximal
 /// steps, factorizations Newton steps, factor_bytes what the sparse LU held. A problem of the last
-/// one's pattern allocates nothing in body space, else what Eigen's LU takes.
+/// one's pattern allocates nothing in body space, else what the analysis of an active set takes.
 class AlartCurnier : public Solver {
  public:
   /// @throws std::invalid_argument for a setting out of its range.

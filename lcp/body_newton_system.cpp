@@ -1,10 +1,7 @@
-#include <signorini/lcp/back_end.h>
 #include <signorini/lcp/body_newton_system.h>
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <span>
 #include <utility>
 
@@ -16,11 +13,9 @@ using Entries = std::span<const WhitenedRows::Entry>;
 void BodyNewtonSystem::set(const WhitenedRows& rows, const AlartCurnierFunction& function) {
   rows_ = &rows;
   function_ = &function;
-  lu_.reset_bytes();
   find_pairs();
   set_pattern();
-  const BackEndScope scope;  // an analysis allocates
-  block_lu_.analyse(matrix());
+  lu_.analyse(matrix());
 }
 
 /// Bodies that no row moves have no dimension, and are in no pair.
@@ -95,7 +90,7 @@ void BodyNewtonSystem::set_pattern() {
   });
 }
 
-BlockLu::View BodyNewtonSystem::matrix() const {
+RefinedLu::View BodyNewtonSystem::matrix() const {
   const Index n = rows_->degrees_of_freedom();
   return {n, n, static_cast<Index>(inner_.size()), outer_.data(), inner_.data(), values_.data()};
 }
@@ -222,73 +217,7 @@ bool BodyNewtonSystem::factor(const std::vector<Block>& A, const std::vector<Blo
   }
   assemble(B);
   add_couplings(B);
-  pivots_freely_ = !block_lu_.factor(matrix());
-  return !pivots_freely_ || factor_freely();
-}
-
-bool BodyNewtonSystem::factor_freely() {
-  pivots_freely_ = true;
-  if (rows_->degrees_of_freedom() > kFreeColumns) {
-    return false;
-  }
-  lu_.analyse(matrix());
   return lu_.factor(matrix());
-}
-
-/// max_i |b - H y|_i / (|H| |y| + |b|)_i (Oettli, Prager 1964); leaves b - H y in residual_.
-double BodyNewtonSystem::backward_error(const Vector& b, const Vector& y) {
-  residual_ = b;
-  size_ = b.cwiseAbs();
-  for (Index c = 0; c < y.size(); ++c) {
-    for (int k = outer_[c]; k < outer_[c + 1]; ++k) {
-      const double term = values_[k] * y[c];
-      residual_[inner_[k]] -= term;
-      size_[inner_[k]] += std::abs(term);
-    }
-  }
-  double worst = 0.0;
-  for (Index i = 0; i < y.size(); ++i) {
-    if (!std::isfinite(residual_[i])) {
-      return std::numeric_limits<double>::infinity();
-    }
-    if (residual_[i] != 0.0) {
-      worst = std::max(worst, std::abs(residual_[i]) / size_[i]);
-    }
-  }
-  return worst;
-}
-
-/// y <- H^-1 y.
-bool BodyNewtonSystem::divide(Vector& y) {
-  constexpr double kEnough = 1e-12;
-  constexpr int kRefinements = 3;
-  const auto numbers = [](Vector& x) {
-    return std::span(x.data(), static_cast<std::size_t>(x.size()));
-  };
-  if (!y.allFinite()) {
-    return false;
-  }
-  right_ = y;
-  if (!pivots_freely_) {
-    block_lu_.solve(numbers(y));
-    for (int k = 0; backward_error(right_, y) > kEnough; ++k) {
-      if (k == kRefinements) {
-        pivots_freely_ = true;
-        break;
-      }
-      block_lu_.solve(numbers(residual_));
-      y += residual_;
-    }
-    if (!pivots_freely_) {
-      return true;
-    }
-    if (!factor_freely()) {
-      return false;
-    }
-  }
-  y = right_;
-  lu_.solve(numbers(y));
-  return true;
 }
 
 /// out = blocks in.
@@ -322,7 +251,7 @@ bool BodyNewtonSystem::solve(const Vector& F, Vector& dx) {
     apply_inverse(F, h_);
     rows_->transpose_times(h_, y_);
     y_ = -y_;
-    if (!divide(y_)) {
+    if (!lu_.solve({y_.data(), static_cast<std::size_t>(y_.size())})) {
       return false;
     }
     rows_->times(y_, gy_);

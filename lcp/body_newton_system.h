@@ -1,8 +1,7 @@
 #pragma once
 
 #include <signorini/lcp/alart_curnier_function.h>
-#include <signorini/lcp/block_lu.h>
-#include <signorini/lcp/sparse_lu.h>
+#include <signorini/lcp/refined_lu.h>
 #include <signorini/lcp/whitened_rows.h>
 
 #include <utility>
@@ -17,15 +16,10 @@ namespace signorini::lcp {
 ///     (I + G^T D G) y = -G^T K^-1 F,     dx = -K^-1 (F + B G y).
 ///
 /// The matrix has a row a degree of freedom of the bodies, however many contacts there are, one
-/// pattern for all steps, and is factored by BlockLu, since D is not symmetric where contacts
-/// slide. y is refined to a backward error of 1e-12, row by row; where that cannot be had, SparseLu
-/// factors a matrix of up to kFreeColumns columns, pivoting as it needs. alpha > 0 keeps K
-/// invertible; the numbers of dx lose digits as alpha goes to 0.
+/// pattern for all steps, and is factored by RefinedLu, since D is not symmetric where contacts
+/// slide. alpha > 0 keeps K invertible; the numbers of dx lose digits as alpha goes to 0.
 class BodyNewtonSystem {
  public:
-  /// What Eigen's LU, in an order of its own, factors in about a second.
-  static constexpr Index kFreeColumns = 10000;
-
   /// Keeps rows and function, whose groups must be the same.
   void set(const WhitenedRows& rows, const AlartCurnierFunction& function);
 
@@ -39,22 +33,17 @@ class BodyNewtonSystem {
   [[nodiscard]] bool solve(const Vector& F, Vector& dx);
 
   /// What the factors hold.
-  [[nodiscard]] std::int64_t factor_bytes() const {
-    return static_cast<std::int64_t>(block_lu_.bytes()) + lu_.bytes();
-  }
+  [[nodiscard]] std::int64_t factor_bytes() const { return lu_.bytes(); }
 
  private:
   void find_pairs();
   [[nodiscard]] int find_start(int column, int row) const;
   void set_pattern();
-  [[nodiscard]] BlockLu::View matrix() const;
+  [[nodiscard]] RefinedLu::View matrix() const;
   [[nodiscard]] bool invert_blocks(const std::vector<AlartCurnierFunction::Block>& A,
                                    const std::vector<AlartCurnierFunction::Block>& B, double alpha);
   void assemble(const std::vector<AlartCurnierFunction::Block>& B);
   void add_couplings(const std::vector<AlartCurnierFunction::Block>& B);
-  [[nodiscard]] bool factor_freely();
-  [[nodiscard]] double backward_error(const Vector& b, const Vector& y);
-  [[nodiscard]] bool divide(Vector& y);
   void apply_inverse(const Vector& in, Vector& out) const;
   void apply(const std::vector<AlartCurnierFunction::Block>& blocks, const Vector& in,
              Vector& out) const;
@@ -80,10 +69,7 @@ class BodyNewtonSystem {
   std::vector<int> diagonal_;    // position of the diagonal in every column
   std::vector<double> product_;  // D G of a group
   Vector h_, y_, gy_;
-  Vector right_, residual_, size_;
-  bool pivots_freely_ = false;
-  BlockLu block_lu_;
-  SparseLu lu_;
+  RefinedLu lu_;
 };
 
 }  // namespace signorini::lcp

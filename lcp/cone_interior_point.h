@@ -54,8 +54,8 @@ struct ConeInteriorPointSettings : SolverSettings {
 /// space of I + G^T D G for a factored M (BodyNewtonSystem), otherwise as NewtonSystem does it, and
 /// two solves with it; statistics: iterations are interior point steps, factorizations those and
 /// the polish's, factor_bytes what the sparse LU held. A problem of the last one's pattern
-/// allocates nothing in body space, else what Eigen's LU takes (unless time_limit is set: the
-/// polish then gets what is left of it).
+/// allocates nothing in body space, else what the analysis of an active set takes (unless
+/// time_limit is set: the polish then gets what is left of it).
 class ConeInteriorPoint : public Solver {
  public:
   /// @throws std::invalid_argument for a setting out of its range.

@@ -7,10 +7,30 @@ namespace signorini::lcp {
 using Block = AlartCurnierFunction::Block;
 using Coupling = AlartCurnierFunction::Coupling;
 
+namespace {
+
+/// Whether every entry has one across the diagonal.
+bool has_symmetric_pattern(const SparseMatrix& W) {
+  for (Index j = 0; j < W.outerSize(); ++j) {
+    for (SparseMatrix::InnerIterator it(W, j); it; ++it) {
+      const int* rows = W.innerIndexPtr();
+      const int* begin = rows + W.outerIndexPtr()[it.row()];
+      const int* end = rows + W.outerIndexPtr()[it.row() + 1];
+      if (!std::binary_search(begin, end, static_cast<int>(j))) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
 void NewtonSystem::set(const SparseMatrix& W, const AlartCurnierFunction& function) {
   W_ = &W;
   function_ = &function;
   sparse_lu_.reset_bytes();
+  is_symmetric_ = function.limits().empty() && has_symmetric_pattern(W);
   const std::size_t n = static_cast<std::size_t>(W.rows());
   active_row_.resize(n);
   couplings_of_column_.resize(n);
@@ -81,7 +101,7 @@ void NewtonSystem::assemble(const std::vector<Block>& A, const std::vector<Block
     for (const int g : groups_in_column_) {
       is_in_column_[g] = 0;
       for (int i = 0; i < groups[g].dimension; ++i) {
-        if (column_[g][i] != 0.0) {
+        if (is_symmetric_ || column_[g][i] != 0.0) {
           inner_.push_back(active_row_[groups[g].first + i]);
           values_.push_back(column_[g][i]);
         }
@@ -104,6 +124,10 @@ bool NewtonSystem::factor_active() {
   }
   const SparseLu::View matrix(n, n, static_cast<Index>(values_.size()), outer_.data(),
                               inner_.data(), values_.data());
+  if (is_symmetric_) {
+    refined_lu_.analyse(matrix);
+    return refined_lu_.factor(matrix);
+  }
   sparse_lu_.analyse(matrix);
   return sparse_lu_.factor(matrix);
 }
@@ -123,7 +147,7 @@ bool NewtonSystem::factor(const std::vector<Block>& A, const std::vector<Block>&
 void NewtonSystem::set_right_side(const Vector& F, const Vector& dx) {
   const auto& groups = function_->groups();
   w_.noalias() = *W_ * dx;
-  right_.clear();
+  right_.resize(active_rows_.size());
   for (const int row : active_rows_) {
     const int g = function_->group_of(row);
     const int k = row - groups[g].first;
@@ -131,7 +155,7 @@ void NewtonSystem::set_right_side(const Vector& F, const Vector& dx) {
     for (int j = 0; j < groups[g].dimension; ++j) {
       sum += (*B_)[g](k, j) * w_[groups[g].first + j];
     }
-    right_.push_back(-F[row] - sum);
+    right_[active_row_[row]] = -F[row] - sum;
   }
   for (Index j = 0; j < dx.size(); ++j) {
     for (const auto& [row, value] : couplings_of_column_[j]) {
@@ -152,8 +176,10 @@ bool NewtonSystem::solve(const Vector& F, Vector& dx) {
   const int n = static_cast<int>(active_rows_.size());
   if (n <= kDenseRows) {
     dense_lu_.solve(right_.data());
-  } else {
+  } else if (!is_symmetric_) {
     sparse_lu_.solve(right_);
+  } else if (!refined_lu_.solve(right_)) {
+    return false;
   }
   for (int k = 0; k < n; ++k) {
     dx[active_rows_[k]] = right_[k];

@@ -2,6 +2,7 @@
 
 #include <signorini/lcp/alart_curnier_function.h>
 #include <signorini/lcp/dense_lu.h>
+#include <signorini/lcp/refined_lu.h>
 #include <signorini/lcp/sparse_lu.h>
 
 #include <vector>
@@ -13,7 +14,8 @@ namespace signorini::lcp {
 ///     (A + B (W + alpha I)) dx = -F.
 ///
 /// Groups with B = 0, where A must be I, are solved by hand; the rest is factored, dense up to
-/// kDenseRows rows, sparse (SparseLu) above.
+/// kDenseRows rows, sparse above: by RefinedLu where the pattern of W is symmetric and no row is
+/// coupled, else by SparseLu.
 class NewtonSystem {
  public:
   static constexpr int kDenseRows = 120;
@@ -30,8 +32,10 @@ class NewtonSystem {
   /// @return false if the step is not finite; dx is then of no use.
   [[nodiscard]] bool solve(const Vector& F, Vector& dx);
 
-  /// The most that the back-end held since set().
-  [[nodiscard]] std::int64_t factor_bytes() const { return sparse_lu_.bytes(); }
+  /// What the sparse factors hold, or held at most since set().
+  [[nodiscard]] std::int64_t factor_bytes() const {
+    return is_symmetric_ ? refined_lu_.bytes() : sparse_lu_.bytes();
+  }
 
  private:
   void find_active(const std::vector<AlartCurnierFunction::Block>& B,
@@ -58,6 +62,8 @@ class NewtonSystem {
   std::vector<double> right_;
   Vector w_;
   DenseLu dense_lu_;
+  bool is_symmetric_ = false;  // the pattern, whichever rows are active
+  RefinedLu refined_lu_;
   SparseLu sparse_lu_;
 };
 
