@@ -115,29 +115,23 @@ bool BodyNewtonSystem::invert_blocks(const std::vector<Block>& A, const std::vec
   return true;
 }
 
-/// H = I + G^T D G.
-namespace {
-
-/// sum += left^T right over the d rows of a group, which are `width` numbers apart.
-void add_product(const double* left, const double* right, int d, int width, int count,
-                 double* sum) {
+/// block += left^T right over the d rows of a group, which are `width` numbers apart.
+void BodyNewtonSystem::add_product(const double* left, const double* right, int d, int width,
+                                   int rows, int columns, double* block, int ld) const {
   if (d == 3) {
-    const double* second = left + width;
-    const double* third = second + width;
-    for (int r = 0; r < count; ++r) {
-      sum[r] += left[r] * right[0] + second[r] * right[width] + third[r] * right[2 * width];
-    }
+    kernels_.add_product_of_three(block, ld, left, right, width, rows, columns);
     return;
   }
-  for (int i = 0; i < d; ++i) {
-    for (int r = 0; r < count; ++r) {
-      sum[r] += left[i * width + r] * right[i * width];
+  for (int c = 0; c < columns; ++c, block += ld) {
+    for (int i = 0; i < d; ++i) {
+      for (int r = 0; r < rows; ++r) {
+        block[r] += left[i * width + r] * right[i * width + c];
+      }
     }
   }
 }
 
-}  // namespace
-
+/// H = I + G^T D G. The columns of a body have one length.
 void BodyNewtonSystem::assemble(const std::vector<Block>& B) {
   std::fill(values_.begin(), values_.end(), 0.0);
   for (const int position : diagonal_) {
@@ -160,13 +154,12 @@ void BodyNewtonSystem::assemble(const std::vector<Block>& B) {
       }
       std::size_t at = pair;
       for (const auto& f : entries) {
+        const int column = f.dimension > 0 ? outer_[f.offset] : 0;
+        const int length = f.dimension > 0 ? outer_[f.offset + 1] - column : 0;
         for (const auto& e : entries) {
-          const int start = row_offset_[at++];
-          for (int c = 0; c < f.dimension; ++c) {
-            double* column = values_.data() + outer_[f.offset + c] + start;
-            add_product(G + e.column, product_.data() + f.column + c, d, width, e.dimension,
-                        column);
-          }
+          double* block = values_.data() + column + row_offset_[at++];
+          add_product(G + e.column, product_.data() + f.column, d, width, e.dimension, f.dimension,
+                      block, length);
         }
       }
     }

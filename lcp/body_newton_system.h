@@ -1,6 +1,7 @@
 #pragma once
 
 #include <signorini/lcp/alart_curnier_function.h>
+#include <signorini/lcp/dense_kernels.h>
 #include <signorini/lcp/refined_lu.h>
 #include <signorini/lcp/whitened_rows.h>
 
@@ -43,6 +44,8 @@ class BodyNewtonSystem {
   [[nodiscard]] bool invert_blocks(const std::vector<AlartCurnierFunction::Block>& A,
                                    const std::vector<AlartCurnierFunction::Block>& B, double alpha);
   void assemble(const std::vector<AlartCurnierFunction::Block>& B);
+  void add_product(const double* left, const double* right, int d, int width, int rows, int columns,
+                   double* block, int ld) const;
   void add_couplings(const std::vector<AlartCurnierFunction::Block>& B);
   void apply_inverse(const Vector& in, Vector& out) const;
   void apply(const std::vector<AlartCurnierFunction::Block>& blocks, const Vector& in,
@@ -69,6 +72,7 @@ class BodyNewtonSystem {
   std::vector<int> diagonal_;    // position of the diagonal in every column
   std::vector<double> product_;  // D G of a group
   Vector h_, y_, gy_;
+  DenseKernels kernels_ = dense_kernels().front();
   RefinedLu lu_;
 };
 

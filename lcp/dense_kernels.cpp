@@ -431,6 +431,41 @@ struct VectorOf<2> {
 template <typename V>
 using HalfOf = typename VectorOf<kLanes<V> / 2>::Type;
 
+/// kRows numbers of y += a x_a + b x_b + c x_c.
+template <typename V, int kRows>
+SIGNORINI_INLINE void add_three(const double* a, const double* b, const double* c, double x_a,
+                                double x_b, double x_c, double* y) {
+  constexpr int kLength = kLanes<V>;
+  if constexpr (kRows >= kLength) {
+    store<V>(load<V>(y) + load<V>(a) * x_a + load<V>(b) * x_b + load<V>(c) * x_c, y);
+    add_three<V, kRows - kLength>(a + kLength, b + kLength, c + kLength, x_a, x_b, x_c,
+                                  y + kLength);
+  } else if constexpr (kRows == 1) {
+    *y += *a * x_a + *b * x_b + *c * x_c;
+  } else if constexpr (kRows > 1) {
+    add_three<HalfOf<V>, kRows>(a, b, c, x_a, x_b, x_c, y);
+  }
+}
+
+template <typename V>
+SIGNORINI_INLINE void add_block_of_three(double* block, int ld, const double* L, const double* R,
+                                         int width, int rows, int columns) {
+  for (int c = 0; c < columns; ++c, ++R, block += ld) {
+    const double x_a = R[0];
+    const double x_b = R[width];
+    const double x_c = R[2 * width];
+    if (rows == 6) {
+      add_three<V, 6>(L, L + width, L + 2 * width, x_a, x_b, x_c, block);
+    } else if (rows == 3) {
+      add_three<V, 3>(L, L + width, L + 2 * width, x_a, x_b, x_c, block);
+    } else {
+      for (int r = 0; r < rows; ++r) {
+        block[r] += L[r] * x_a + L[width + r] * x_b + L[2 * width + r] * x_c;
+      }
+    }
+  }
+}
+
 template <typename V>
 SIGNORINI_INLINE double sum_of(const V& v) {
   if constexpr (kLanes<V> == 2) {
@@ -525,28 +560,37 @@ SIGNORINI_INLINE void back_substitute(const double* panel, int ld, int rows, int
 }
 
 // The functions of a set, compiled for it. kVectors x kColumns tiles fill its registers.
-#define SIGNORINI_KERNELS(set, attribute, V, kVectors, kColumns)                                \
-  attribute bool factor_lu_##set(double* lower, double* upper, int ld, int rows, int columns,   \
-                                 int* exchanges) {                                              \
-    return factor_lu_panels<V, kVectors, kColumns>(lower, upper, ld, rows, columns, exchanges); \
-  }                                                                                             \
-  attribute bool factor_##set(double* panel, int ld, int rows, int columns) {                   \
-    return factor_panel<V, kVectors, kColumns>(panel, ld, rows, columns);                       \
-  }                                                                                             \
-  attribute void subtract_product_##set(double* square, int ld_square, const double* A,         \
-                                        const double* B, int ld, int size, int columns) {       \
-    subtract_square<V, kVectors, kColumns>(square, ld_square, A, B, ld, size, columns);         \
-  }                                                                                             \
-  attribute void forward_##set(const double* panel, int ld, int rows, int columns,              \
-                               const double* inverse, double* top, double* below) {             \
-    forward_substitute<V>(panel, ld, rows, columns, inverse, top, below);                       \
-  }                                                                                             \
-  attribute void backward_##set(const double* panel, int ld, int rows, int columns,             \
-                                const double* inverse, double* top, const double* below) {      \
-    back_substitute<V>(panel, ld, rows, columns, inverse, top, below);                          \
-  }                                                                                             \
-  constexpr DenseKernels k_##set = {                                                            \
-      #set, factor_##set, factor_lu_##set, subtract_product_##set, forward_##set, backward_##set};
+#define SIGNORINI_KERNELS(set, attribute, V, kVectors, kColumns)                                 \
+  attribute bool factor_lu_##set(double* lower, double* upper, int ld, int rows, int columns,    \
+                                 int* exchanges) {                                               \
+    return factor_lu_panels<V, kVectors, kColumns>(lower, upper, ld, rows, columns, exchanges);  \
+  }                                                                                              \
+  attribute bool factor_##set(double* panel, int ld, int rows, int columns) {                    \
+    return factor_panel<V, kVectors, kColumns>(panel, ld, rows, columns);                        \
+  }                                                                                              \
+  attribute void subtract_product_##set(double* square, int ld_square, const double* A,          \
+                                        const double* B, int ld, int size, int columns) {        \
+    subtract_square<V, kVectors, kColumns>(square, ld_square, A, B, ld, size, columns);          \
+  }                                                                                              \
+  attribute void add_product_of_three_##set(double* block, int ld, const double* L,              \
+                                            const double* R, int width, int rows, int columns) { \
+    add_block_of_three<V>(block, ld, L, R, width, rows, columns);                                \
+  }                                                                                              \
+  attribute void forward_##set(const double* panel, int ld, int rows, int columns,               \
+                               const double* inverse, double* top, double* below) {              \
+    forward_substitute<V>(panel, ld, rows, columns, inverse, top, below);                        \
+  }                                                                                              \
+  attribute void backward_##set(const double* panel, int ld, int rows, int columns,              \
+                                const double* inverse, double* top, const double* below) {       \
+    back_substitute<V>(panel, ld, rows, columns, inverse, top, below);                           \
+  }                                                                                              \
+  constexpr DenseKernels k_##set = {#set,                                                        \
+                                    factor_##set,                                                \
+                                    factor_lu_##set,                                             \
+                                    subtract_product_##set,                                      \
+                                    add_product_of_three_##set,                                  \
+                                    forward_##set,                                               \
+                                    backward_##set};
 
 SIGNORINI_KERNELS(baseline, , Two, 2, 4)
 

@@ -30,6 +30,10 @@ struct DenseKernels {
   /// kPadding) -= A B^T, A and B: the last `size` rows of panels, starting there.
   void (*subtract_product)(double* square, int ld_square, const double* A, const double* B, int ld,
                            int size, int columns);
+  /// block (rows x columns, leading dimension ld) += L^T R, L and R three rows of numbers that are
+  /// `width` apart. Fastest for 3 and 6 rows.
+  void (*add_product_of_three)(double* block, int ld, const double* L, const double* R, int width,
+                               int rows, int columns);
   /// Forward substitution with a panel: top <- L_11^-1 top, below <- below - L_21 top. `below`
   /// needs kPadding numbers of memory behind it. @param inverse 1 / the diagonal of L_11: each
   /// number of a substitution waits for the one before, and would for a division

@@ -104,6 +104,24 @@ TEST_P(EveryInstructionSet, LTimesUAndTheRestGiveTheExchangedMatrix) {
   EXPECT_GT(exchanged, 100);
 }
 
+TEST_P(EveryInstructionSet, AddsAProductOfThreeRowsAndNothingBeside) {
+  constexpr int kWidth = 15;
+  constexpr int kLd = 9;
+  const Matrix left = random_matrix(kWidth, 0.0, 1).leftCols(3);
+  const Matrix right = random_matrix(kWidth, 0.0, 2).leftCols(3);
+  for (int rows = 0; rows <= 7; ++rows) {
+    for (const int columns : {0, 1, 3, 6}) {
+      Matrix block = Matrix::Ones(kLd, columns);
+      Matrix wanted = block;
+      wanted.topRows(rows) += left.middleRows(4, rows) * right.middleRows(5, columns).transpose();
+      GetParam().add_product_of_three(block.data(), kLd, left.data() + 4, right.data() + 5, kWidth,
+                                      rows, columns);
+      EXPECT_LE((block - wanted).cwiseAbs().sum(), 1e-13) << rows << " x " << columns;
+      EXPECT_EQ(block.bottomRows(kLd - rows), wanted.bottomRows(kLd - rows));
+    }
+  }
+}
+
 TEST_P(EveryInstructionSet, RefusesPivotsThatAreZeroOrNotFinite) {
   for (const double bad :
        {0.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
