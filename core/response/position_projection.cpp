@@ -9,20 +9,17 @@
 namespace signorini {
 namespace {
 
-bool any_overlap(const ContactSet& contacts) {
-  return std::any_of(contacts.begin(), contacts.end(),
-                     [](const Contact& contact) { return contact.gap < -kToleratedOverlap; });
+/// What an equality or a limit is off by, m or rad.
+double error_of(const JointRow& row) {
+  const bool is_equality = std::isinf(row.lower);
+  return is_equality ? std::abs(row.error) : -row.error;
 }
 
-bool is_equality(const JointRow& row) {
-  return std::isinf(row.lower);
-}
-
-/// The largest of what equalities and limits are off by, m and rad alike.
+/// The largest of that.
 double worst_error(const std::vector<JointRow>& rows) {
   double worst = 0.0;
   for (const JointRow& row : rows) {
-    worst = std::max(worst, is_equality(row) ? std::abs(row.error) : -row.error);
+    worst = std::max(worst, error_of(row));
   }
   return worst;
 }
@@ -56,11 +53,48 @@ double energy(const Bodies& bodies, const State& state, const Vec3& gravity) {
 
 }  // namespace
 
-/// The joints' equalities and limits, and what they are off by.
+/// The equalities and limits of the joints that are looked at, and what they are off by.
 void PositionProjection::measure(const Joints& joints, const State& state) {
   joint_rows(joints, state, 1.0, joined_);
-  std::erase_if(joined_, [](const JointRow& row) { return row.slot == kJointMotorSlot; });
+  std::erase_if(joined_, [this](const JointRow& row) {
+    return row.slot == kJointMotorSlot || joint_is_off_[row.joint] == 0;
+  });
   error_ = worst_error(joined_);
+}
+
+/// Keeps the contacts and joints of the sets of linked bodies in which something is off; joined_
+/// has the rows of all joints. @return whether there are any
+bool PositionProjection::select(const Bodies& bodies, const ContactSet& contacts,
+                                const Joints& joints) {
+  pairs_.clear();
+  add_body_pairs(contacts, pairs_);
+  for (const Joint& joint : joints) {
+    pairs_.push_back({joint.body_a, joint.body_b});
+  }
+  const std::vector<int>& set_of_link = sets_.find(bodies, pairs_);
+  const int* set_of_joint = set_of_link.data() + contacts.size();
+  set_is_off_.assign(pairs_.size(), 0);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (contacts[i].gap < -kToleratedOverlap) {
+      set_is_off_[set_of_link[i]] = 1;
+    }
+  }
+  for (const JointRow& row : joined_) {
+    if (error_of(row) > kToleratedJointError) {
+      set_is_off_[set_of_joint[row.joint]] = 1;
+    }
+  }
+  contacts_.clear();
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (set_is_off_[set_of_link[i]] != 0) {
+      contacts_.push_back(contacts[i]);
+    }
+  }
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    joint_is_off_[j] = set_is_off_[set_of_joint[j]];
+  }
+  std::erase_if(joined_, [this](const JointRow& row) { return joint_is_off_[row.joint] == 0; });
+  return !contacts_.empty() || !joined_.empty();
 }
 
 /// C + J D + c l over the contacts and the joints' rows, with their bounds.
@@ -173,12 +207,12 @@ void PositionProjection::project(const Bodies& bodies, const ContactSet& contact
                                  ProjectionReport& report, const Joints& joints,
                                  const Bodies* metric) {
   report = {};
+  joint_is_off_.assign(joints.size(), 1);
   measure(joints, state);
-  if (!any_overlap(contacts) && !(error_ > kToleratedJointError)) {
+  if (!select(bodies, contacts, joints)) {
     return;
   }
   start_ = state;
-  contacts_ = contacts;
   run({bodies, joints, solver}, metric != nullptr ? *metric : bodies, state, report);
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     report.largest_displacement =

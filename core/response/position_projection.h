@@ -56,8 +56,9 @@ inline constexpr double kProjectionCompliance = 1e-12;
 /// curvature leaves is of second order in D and is seen by the next call. Gaps > 0 among the
 /// contacts are kept from closing further than to zero. Only x and q change: p and L (world axes)
 /// are the same bits, so no velocity of translation is added and both momenta are conserved; w =
-/// J^-1 L follows the new orientation. Does nothing if no contact is deeper than kToleratedOverlap
-/// and no joint farther off than kToleratedJointError.
+/// J^-1 L follows the new orientation. Bodies that contacts and joints link, though not over fixed
+/// or driven ones, are left alone where no contact is deeper than kToleratedOverlap and no joint
+/// farther off than kToleratedJointError: D is 0 there.
 ///
 /// With joints: also C + J D = 0 for their equalities and C + J D >= 0 for their limits
 /// (joint_rows.h), softened by kProjectionCompliance; while a joint is off, again from where the
@@ -82,6 +83,7 @@ class PositionProjection {
     const Joints& joints;
     lcp::Solver& solver;
   };
+  bool select(const Bodies& bodies, const ContactSet& contacts, const Joints& joints);
   void run(const Scene& scene, const Bodies& metric, State& state, ProjectionReport& report);
   bool solve(const Scene& scene, const Bodies& metric, const State& state,
              ProjectionReport& report);
@@ -90,10 +92,13 @@ class PositionProjection {
   void choose_length(const Scene& scene, const State& state);
   void displace(double length, const State& state, State& moved) const;
 
-  ContactSet contacts_;  // carried along
-  std::vector<JointRow> joined_;
-  double error_ = 0.0;   // of joined_
-  double length_ = 1.0;  // the part of D that is made
+  LinkedSets sets_;
+  std::vector<char> set_is_off_;
+  std::vector<char> joint_is_off_;  // or linked to what is
+  ContactSet contacts_;             // of the sets that are off, carried along
+  std::vector<JointRow> joined_;    // of joint_is_off_
+  double error_ = 0.0;              // of joined_
+  double length_ = 1.0;             // the part of D that is made
   State start_, moved_;
   BodyPairs pairs_;
   NormalRows rows_;

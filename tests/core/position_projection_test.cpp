@@ -108,6 +108,42 @@ TEST(PositionProjection, DoesNothingWithoutOverlap) {
   EXPECT_EQ(state[1].x.z(), 0.5 - 0.5 * kToleratedOverlap);
 }
 
+/// Of three balls on the plane one overlaps it, and one hangs on a joint that is off: the third,
+/// within what is left alone, stays where it is to the bit.
+TEST(PositionProjection, LeavesAloneWhatNothingLinksToWhatIsOff) {
+  const Bodies bodies{fixed_body(), ball_body(1.0, 0.5), ball_body(1.0, 0.5), ball_body(1.0, 0.5)};
+  const double almost = 0.5 - 0.5 * kToleratedOverlap;
+  State state{at(Vec3::Zero()), at(Vec3(0, 0, 0.49)), at(Vec3(5, 0, almost)), at(Vec3(10, 0, 0.6))};
+  Joints joints{joint_at(JointKind::kBall, 3, 0, state, Vec3(10, 0, 1.0))};
+  state[3].x.z() = 0.601;  // a millimetre off
+  joints.push_back(joint_at(JointKind::kBall, 2, 0, state, Vec3(5, 0, 1.0)));
+  PlaneContacts finder(Vec3::UnitZ(),
+                       {{TestBall{0.5}, {}}, {TestBall{0.5}, {}}, {TestBall{0.5}, {}}});
+  const State before = state;
+  PositionProjection projection;
+  ProjectionReport report;
+  const auto lcp_solver = lcp::make_solver("auto");
+  projection.project(bodies, contacts_of(finder, state), kGravity, *lcp_solver, state, report,
+                     joints);
+  EXPECT_TRUE(lcp::is_solved(report.status)) << report.detail;
+  EXPECT_NEAR(state[1].x.z(), 0.5, 1e-10);
+  EXPECT_EQ(state[2].x, before[2].x);
+  EXPECT_EQ(state[2].q.coeffs(), before[2].q.coeffs());
+  EXPECT_NEAR(state[3].x.z(), 0.6, 1e-9);
+  // And once more, with nothing off, then with the third alone.
+  projection.project(bodies, contacts_of(finder, state), kGravity, *lcp_solver, state, report,
+                     joints);
+  EXPECT_EQ(report.status, lcp::Status::kNotRun);
+  state[2].x.x() += 1e-3;
+  const State third = state;
+  projection.project(bodies, contacts_of(finder, state), kGravity, *lcp_solver, state, report,
+                     joints);
+  EXPECT_TRUE(lcp::is_solved(report.status)) << report.detail;
+  EXPECT_LT(state[2].x.x(), third[2].x.x() - 1e-4);  // it also turns
+  EXPECT_EQ(state[1].x, third[1].x);
+  EXPECT_EQ(state[3].x, third[3].x);
+}
+
 TEST(PositionProjection, MovesNothingWhereThereIsNoRoom) {
   // A ball between two walls that are closer than its diameter: J D >= 1 mm and -J D >= 1 mm.
   const Bodies bodies{fixed_body(), ball_body(1.0, 0.5)};
