@@ -86,7 +86,11 @@ lcp::Problem dense_problem(int size) {
 
 FixedAnswers solver_answers(std::string_view name, std::span<const lcp::Problem> problems) {
   FixedAnswers answers{.part = "solver " + std::string(name), .bound = kOfOneAnswer};
-  const auto solver = lcp::make_solver(name, {.max_iterations = 300});
+  // An interior point ends between the iterates, wherever its residual is small enough: the
+  // answer's digits beyond the tolerance are those of systems with a condition of one over it.
+  const bool is_interior = name == "cone-interior-point" || name == "auto";
+  const auto solver =
+      lcp::make_solver(name, {.tolerance = is_interior ? 1e-13 : 1e-8, .max_iterations = 300});
   lcp::Result result;
   for (const lcp::Problem& problem : problems) {
     if (!solver->refuses(problem).empty() || (name == "exact" && problem.size() > 12)) {
@@ -101,13 +105,15 @@ FixedAnswers solver_answers(std::string_view name, std::span<const lcp::Problem>
   return answers;
 }
 
+/// The two with cones have one w: of a wall that is thrown together Coulomb's law has many (two
+/// solvers' differ by 3e-3 m/s, both certified to 1e-12), and rounding chooses.
 void add_solvers(std::vector<FixedAnswers>& all) {
   const std::vector<lcp::Problem> problems = {
       dense_problem(8),
       dense_problem(30),
       contact_problem({.family = "tower4", .size = 6, .mass_ratio = 100.0}, false),
       contact_problem({.family = "spheres", .size = 60}, false),
-      contact_problem({.family = "wall", .size = 4}, true),
+      contact_problem({.family = "tower4", .size = 12}, true),
       contact_problem({.family = "spheres", .size = 40, .seed = 2}, true)};
   for (const std::string_view name : lcp::solver_names()) {
     all.push_back(solver_answers(name, problems));
