@@ -34,9 +34,9 @@ struct AlartCurnierSettings : SolverSettings {
 /// 2018, section 5.2). Redundant contacts, for which plain Newton has a singular matrix, only make
 /// alpha matter; the line search weighs u by rho = max(alpha, min(1, error))^-1/2. alpha falls
 /// while the inner iterations succeed, fastest where they are few, and rises when they fail; where
-/// it failed it does not come back at once. A start from which 20 proximal
-/// steps bring less than a tenth, or that the largest alpha or the finest tolerance does not help,
-/// is given up for 0 (once): forces that strain against each other, once there, stay.
+/// it failed it does not come back at once. A start from which 20 proximal steps bring less than a
+/// tenth, or that the largest alpha or the finest tolerance does not help, is given up for 0
+/// (once): forces that strain against each other, once there, stay.
 ///
 /// No solution is promised: Coulomb's problem may have none, and the proximal iteration is known to
 /// converge only where W is monotone on the cones. Statuses beside solved: kIterationLimit,

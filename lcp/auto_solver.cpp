@@ -16,7 +16,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Index kSmall = 100;                 // rows up to which dense pivoting is the fastest
 constexpr Index kSmallCold = 48;              // the same, of a factored M without a start
 constexpr Index kSingleContactRows = 180;     // up to which a guess and pivots beat Newton's steps
-constexpr int kPivotsOfARow = 2;              // that such a guess may be off
+constexpr int kPivotsFromAGuess = 360;        // then it was none
 constexpr Index kStructuredLemkeRows = 2000;  // a pivot costs up to n^2 / 2
 constexpr Index kLemkeRows = 1000;            // the same, with larger constants
 constexpr double kMassRatioForSweeps = 1e3;   // above it sweeps stall
@@ -89,8 +89,7 @@ void AutoSolver::choose(const Problem& problem) {
   const bool single = factored && n > kSmallCold && n <= kSingleContactRows && problem.is_lcp() &&
                       has_single_contacts(std::get<FactoredMatrix>(problem.M));
   if (single) {
-    const int most = kPivotsOfARow * static_cast<int>(n);
-    chain_.push_back({"structured-lemke", "one contact a pair of bodies", most, true});
+    chain_.push_back({"structured-lemke", "one contact a pair of bodies", kPivotsFromAGuess, true});
   }
   if (symmetric && n <= kSmall) {
     if (factored && !has_start_ && n > kSmallCold) {

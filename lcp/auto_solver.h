@@ -30,14 +30,18 @@ struct AutoSettings : SolverSettings {
 /// | friction cones | sticking (factored M, from a start) or cone-interior-point (factored M, from
 /// none; the associated law, n > 100), frictionless (factored M, from none, up to 300 rows that are
 /// not tangential), alart-curnier, frictionless (if it was not tried, up to 2000 such rows), nsgs |
-/// | LCP with a factored M, 48 < n <= 180, at most one row in eight on the bodies of the one before
-/// | structured-lemke (behind the sweeps of the row for n > 100), then as below | | symmetric M, n
-/// <= 100 | interior-point (factored M, from no start, n > 48), dantzig, structured-lemke,
-/// alart-curnier, lemke, pgs | | factored M, n > 100 | nncg, for a few sweeps and then if they
-/// promise to end soon (with a tolerance of 1e-5 or more, or n > 5000; mass ratio <= 1e3),
-/// interior-point, alart-curnier, structured-lemke, lemke, pgs | | symmetric M given whole, n > 100
-/// | block-pivoting (50 sets), interior-point, alart-curnier, structured-lemke, lemke, pgs | |
-/// other M | interior-point, alart-curnier, lemke, pgs |
+/// | LCP, factored M, 48 < n <= 180, one contact a pair of bodies | structured-lemke (360 pivots;
+/// behind the sweeps of the row for n > 100), then as below |
+/// | symmetric M, n <= 100 | interior-point (factored M, from no start, n > 48), dantzig,
+/// structured-lemke, alart-curnier, lemke, pgs |
+/// | factored M, n > 100 | nncg, for a few sweeps and then if they promise to end soon (with a
+/// tolerance of 1e-5 or more, or n > 5000; mass ratio <= 1e3), interior-point, alart-curnier,
+/// structured-lemke, lemke, pgs |
+/// | symmetric M given whole, n > 100 | block-pivoting (50 sets), interior-point, alart-curnier,
+/// structured-lemke, lemke, pgs |
+/// | other M | interior-point, alart-curnier, lemke, pgs |
+///
+/// One contact a pair: at most one row in eight is on the bodies of the row before.
 ///
 /// Symmetric is what SymmetricLcp takes: to 1e-2, since measured matrices are printed with few
 /// digits. The order is by factorisations counted (real problems and generated families, to 1e-8):
@@ -50,9 +54,9 @@ struct AutoSettings : SolverSettings {
 ///   interior-point takes 1.2 times dantzig's at 40 rows, the same at 48, 0.7 at 64, 0.4 at 100;
 ///   from a near one 1.7, 1.3, 1.2 and 0.6;
 /// - one contact a pair of bodies (piles of spheres, mass ratios 1 to 1e6), by time: the guess of
-///   structured-lemke's sweeps is 0 to 60 pivots off where M is regular; it takes 0.3 to 0.9 of
-///   interior-point's time at 64 and 100 rows, 0.6 to 1 at 160, 0.5 to 1.4 at 200 (the analysis of
-///   a new pattern included in both: 0.9, 0.8, 1);
+///   structured-lemke's sweeps is 2 to 60 pivots off up to 160 rows; it takes 0.4 to 0.8 of
+///   interior-point's time at 64 and 100 rows, 0.7 to 1.1 at 160, 0.5 to 1.4 at 200; where the
+///   pattern is new (mass ratio 1) 0.8, 0.9 and 1 of it at 64, 100 and 160;
 /// - factored M: interior-point 2 to 24; block-pivoting 7 to 83 and with mass ratios of 1e6 up to
 ///   2205, so it is not tried;
 /// - associated law, M given whole, 8 real problems with n > 600: cone-interior-point 19 to 43,

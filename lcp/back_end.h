@@ -3,9 +3,9 @@
 namespace signorini::lcp {
 
 /// Stands around the work of a sparse factorisation's back-end (Eigen's, CHOLMOD), and around the
-/// analysis of a new pattern by ours: what this thread
-/// allocates meanwhile is the back-end's, reported as Statistics::factor_bytes, and not ours. The
-/// tests that count our allocations leave it out.
+/// analysis of a new pattern by ours: what this thread allocates meanwhile is the back-end's,
+/// reported as Statistics::factor_bytes, and not ours. The tests that count our allocations leave
+/// it out.
 class BackEndScope {
  public:
   BackEndScope() { ++depth(); }

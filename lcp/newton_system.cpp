@@ -1,4 +1,5 @@
 #include <signorini/lcp/newton_system.h>
+#include <signorini/lcp/sparse_form.h>
 
 #include <algorithm>
 
@@ -6,25 +7,6 @@ namespace signorini::lcp {
 
 using Block = AlartCurnierFunction::Block;
 using Coupling = AlartCurnierFunction::Coupling;
-
-namespace {
-
-/// Whether every entry has one across the diagonal.
-bool has_symmetric_pattern(const SparseMatrix& W) {
-  for (Index j = 0; j < W.outerSize(); ++j) {
-    for (SparseMatrix::InnerIterator it(W, j); it; ++it) {
-      const int* rows = W.innerIndexPtr();
-      const int* begin = rows + W.outerIndexPtr()[it.row()];
-      const int* end = rows + W.outerIndexPtr()[it.row() + 1];
-      if (!std::binary_search(begin, end, static_cast<int>(j))) {
-        return false;
-      }
-    }
-  }
-  return true;
-}
-
-}  // namespace
 
 void NewtonSystem::set(const SparseMatrix& W, const AlartCurnierFunction& function) {
   W_ = &W;

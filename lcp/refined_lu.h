@@ -16,7 +16,7 @@ namespace signorini::lcp {
 class RefinedLu {
  public:
   using View = BlockLu::View;
-  /// What Eigen's LU, in an order of its own, factors in about a second.
+  /// Eigen's LU, in an order of its own, takes 0.02 to 0.1 s for the body spaces of half as many.
   static constexpr int kFreeColumns = 10000;
 
   /// Orders and analyses the pattern; nothing where it is the last one's.

@@ -5,6 +5,21 @@
 
 namespace signorini::lcp {
 
+bool has_symmetric_pattern(const SparseMatrix& M) {
+  for (Index j = 0; j < M.outerSize(); ++j) {
+    for (SparseMatrix::InnerIterator it(M, j); it; ++it) {
+      const int* begin = M.innerIndexPtr() + M.outerIndexPtr()[it.row()];
+      const int count = M.isCompressed()
+                            ? M.outerIndexPtr()[it.row() + 1] - M.outerIndexPtr()[it.row()]
+                            : M.innerNonZeroPtr()[it.row()];
+      if (!std::binary_search(begin, begin + count, static_cast<int>(j))) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
 void SparseForm::form(const MatrixForm& M, SparseMatrix& matrix) {
   if (const auto* dense = std::get_if<Matrix>(&M)) {
     form(*dense, matrix);

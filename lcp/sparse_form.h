@@ -6,6 +6,9 @@
 
 namespace signorini::lcp {
 
+/// Whether every entry has one across the diagonal. @param M rows sorted in every column
+[[nodiscard]] bool has_symmetric_pattern(const SparseMatrix& M);
+
 /// A matrix of any form as a sparse one, in memory that only grows.
 class SparseForm {
  public:

@@ -1,4 +1,5 @@
 #include <signorini/lcp/number_text.h>
+#include <signorini/lcp/sparse_form.h>
 #include <signorini/lcp/symmetric_lcp.h>
 
 #include <algorithm>
@@ -23,18 +24,6 @@ double root_scale(double d) {
 double relative_difference(double one, double other, double d_i, double d_j) {
   const double difference = std::abs(one - other);
   return difference > 0.0 ? difference / std::sqrt(std::abs(d_i)) / std::sqrt(std::abs(d_j)) : 0.0;
-}
-
-/// Whether an entry has no partner across the diagonal: sparse factors want a symmetric pattern.
-bool has_lone_entry(const SparseMatrix& M) {
-  for (Index j = 0; j < M.outerSize(); ++j) {
-    for (SparseMatrix::InnerIterator it(M, j); it; ++it) {
-      if (it.value() != 0.0 && it.row() != j && M.coeff(j, it.row()) == 0.0) {
-        return true;
-      }
-    }
-  }
-  return false;
 }
 
 double entry(const Problem& problem, Index i, Index j) {
@@ -100,10 +89,10 @@ void SymmetricLcp::copy(const Matrix& M) {
 }
 
 void SymmetricLcp::copy(const SparseMatrix& M) {
-  if (has_lone_entry(M)) {
-    copy_entries(SparseMatrix(M + 0.0 * SparseMatrix(M.transpose())));
-  } else {
+  if (has_symmetric_pattern(M)) {
     copy_entries(M);
+  } else {  // sparse factors want one
+    copy_entries(SparseMatrix(M + 0.0 * SparseMatrix(M.transpose())));
   }
 }
 

@@ -9,6 +9,14 @@
 namespace signorini {
 namespace {
 
+bool is_overlap(const Contact& contact) {
+  return contact.gap < -kToleratedOverlap;
+}
+
+bool any_overlap(const ContactSet& contacts) {
+  return std::any_of(contacts.begin(), contacts.end(), is_overlap);
+}
+
 /// What an equality or a limit is off by, m or rad.
 double error_of(const JointRow& row) {
   const bool is_equality = std::isinf(row.lower);
@@ -63,8 +71,8 @@ void PositionProjection::measure(const Joints& joints, const State& state) {
 }
 
 /// Keeps the contacts and joints of the sets of linked bodies in which something is off; joined_
-/// has the rows of all joints. @return whether there are any
-bool PositionProjection::select(const Bodies& bodies, const ContactSet& contacts,
+/// has the rows of all joints.
+void PositionProjection::select(const Bodies& bodies, const ContactSet& contacts,
                                 const Joints& joints) {
   pairs_.clear();
   add_body_pairs(contacts, pairs_);
@@ -75,7 +83,7 @@ bool PositionProjection::select(const Bodies& bodies, const ContactSet& contacts
   const int* set_of_joint = set_of_link.data() + contacts.size();
   set_is_off_.assign(pairs_.size(), 0);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    if (contacts[i].gap < -kToleratedOverlap) {
+    if (is_overlap(contacts[i])) {
       set_is_off_[set_of_link[i]] = 1;
     }
   }
@@ -94,7 +102,6 @@ bool PositionProjection::select(const Bodies& bodies, const ContactSet& contacts
     joint_is_off_[j] = set_is_off_[set_of_joint[j]];
   }
   std::erase_if(joined_, [this](const JointRow& row) { return joint_is_off_[row.joint] == 0; });
-  return !contacts_.empty() || !joined_.empty();
 }
 
 /// C + J D + c l over the contacts and the joints' rows, with their bounds.
@@ -209,9 +216,10 @@ void PositionProjection::project(const Bodies& bodies, const ContactSet& contact
   report = {};
   joint_is_off_.assign(joints.size(), 1);
   measure(joints, state);
-  if (!select(bodies, contacts, joints)) {
+  if (!any_overlap(contacts) && !(error_ > kToleratedJointError)) {
     return;
   }
+  select(bodies, contacts, joints);
   start_ = state;
   run({bodies, joints, solver}, metric != nullptr ? *metric : bodies, state, report);
   for (std::size_t k = 0; k < bodies.size(); ++k) {

@@ -83,7 +83,7 @@ class PositionProjection {
     const Joints& joints;
     lcp::Solver& solver;
   };
-  bool select(const Bodies& bodies, const ContactSet& contacts, const Joints& joints);
+  void select(const Bodies& bodies, const ContactSet& contacts, const Joints& joints);
   void run(const Scene& scene, const Bodies& metric, State& state, ProjectionReport& report);
   bool solve(const Scene& scene, const Bodies& metric, const State& state,
              ProjectionReport& report);

@@ -1,6 +1,8 @@
 #include <signorini/lcp/block_cholesky.h>
 #include <signorini/lcp/whitened_rows.h>
 
+#include "random_block_matrix.h"
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <bench/contact_families.h>
@@ -121,36 +123,14 @@ INSTANTIATE_TEST_SUITE_P(All, EveryInstructionSet,
                          testing::ValuesIn(dense_kernels().begin(), dense_kernels().end()),
                          set_name);
 
-/// A random graph as the lower triangle of a diagonally dominant matrix, blocks of random sizes.
-SparseMatrix random_block_matrix(int blocks, double edges, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::uniform_int_distribution<int> size(1, 7);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  std::vector<int> start{0};
-  for (int b = 0; b < blocks; ++b) {
-    start.push_back(start.back() + size(random));
-  }
-  std::vector<Eigen::Triplet<double>> entries;
-  for (int b = 0; b < blocks; ++b) {
-    for (int a = b; a < blocks; ++a) {
-      if (a != b && std::abs(uniform(random)) > edges / blocks) {
-        continue;
-      }
-      for (int j = start[b]; j < start[b + 1]; ++j) {
-        for (int i = std::max(j, start[a]); i < start[a + 1]; ++i) {
-          entries.emplace_back(i, j, i == j ? 30.0 * edges : uniform(random));
-        }
-      }
-    }
-  }
-  SparseMatrix lower(start.back(), start.back());
-  lower.setFromTriplets(entries.begin(), entries.end());
-  return lower;
+/// The lower triangle of a diagonally dominant matrix.
+SparseMatrix random_lower(int blocks, double edges, std::uint64_t seed) {
+  return random_block_matrix(blocks, edges, 30.0 * edges, seed).triangularView<Eigen::Lower>();
 }
 
 TEST(BlockCholesky, SolvesRandomGraphs) {
   for (int seed = 1; seed <= 60; ++seed) {
-    const SparseMatrix lower = random_block_matrix(1 + 3 * seed, 1.0 + seed % 5, seed);
+    const SparseMatrix lower = random_lower(1 + 3 * seed, 1.0 + seed % 5, seed);
     BlockCholesky cholesky;
     cholesky.analyse(lower);
     ASSERT_TRUE(cholesky.factor(3.0 * lower));  // of which nothing may stay
@@ -262,7 +242,7 @@ TEST(NestedDissection, BeatsMinimumDegreeInSpaceAndNotOnALine) {
 }
 
 TEST(Supernodes, EveryColumnOfTheFactorIsInsideItsPanel) {
-  const SparseMatrix lower = random_block_matrix(60, 2.0, 5);
+  const SparseMatrix lower = random_lower(60, 2.0, 5);
   Graph graph;
   const Index n = lower.rows();
   std::vector<std::vector<int>> neighbours(n);
@@ -326,8 +306,8 @@ TEST(Supernodes, EveryColumnOfTheFactorIsInsideItsPanel) {
 
 TEST(BlockCholesky, SamePatternAgainAndAnotherPattern) {
   BlockCholesky cholesky;
-  const SparseMatrix one = random_block_matrix(30, 2.0, 1);
-  const SparseMatrix other = random_block_matrix(50, 2.0, 2);
+  const SparseMatrix one = random_lower(30, 2.0, 1);
+  const SparseMatrix other = random_lower(50, 2.0, 2);
   for (const SparseMatrix* lower : {&one, &one, &other, &one}) {
     cholesky.analyse(*lower);
     ASSERT_TRUE(cholesky.factor(*lower));

@@ -46,6 +46,41 @@ Problem pile() {
   return bench::make_family({.family = "spheres", .size = 200, .mass_ratio = 10.0});
 }
 
+/// Entries of M without the one across the diagonal: no exchange may leave anything of them.
+TEST(PrincipalFactor, TakesAPatternThatIsNotSymmetric) {
+  constexpr int kRows = 40;
+  std::mt19937 random(3);
+  std::uniform_int_distribution<int> row(0, kRows - 1);
+  Matrix M = Matrix::Identity(kRows, kRows);
+  for (int e = 0; e < 3 * kRows; ++e) {
+    const int i = row(random);
+    const int j = row(random);
+    M(i, j) = i != j && M(j, i) == 0.0 ? 0.009 : M(i, j);
+  }
+  Problem problem;
+  problem.M = SparseMatrix(M.sparseView());
+  problem.q = Vector::Ones(kRows);
+  SymmetricLcp lcp;
+  ASSERT_TRUE(lcp.assign(problem));
+  ASSERT_FALSE(lcp.is_dense());
+  PrincipalFactor basis;
+  basis.reset(lcp);
+  Vector rate(kRows);
+  for (int j = 0; j < kRows; ++j) {
+    ASSERT_TRUE(basis.exchange(j));
+    ASSERT_TRUE(basis.exchange(j == 0 ? 0 : j - 1));  // in the end one is left, and nothing else
+  }
+  for (int j = 0; j < kRows; ++j) {
+    if (basis.contains(j)) {
+      ASSERT_TRUE(basis.exchange(j));
+    }
+  }
+  for (int j = 0; j < kRows; ++j) {
+    basis.column(j, rate.data());
+    EXPECT_EQ(rate, scaled_matrix(lcp).col(j)) << j;
+  }
+}
+
 template <typename Basis>
 class PrincipalBases : public testing::Test {};
 using Bases = testing::Types<PrincipalTableau, PrincipalFactor>;

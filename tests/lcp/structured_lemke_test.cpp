@@ -132,35 +132,6 @@ TEST(StructuredLemke, WarmStartFromASolutionTakesNoPivots) {
   }
 }
 
-/// An entry of M without the one across the diagonal, small enough to count as symmetric.
-TEST(StructuredLemke, TakesAPatternThatIsNotSymmetric) {
-  constexpr int kRows = 60;
-  std::mt19937 random(3);
-  std::uniform_int_distribution<int> row(0, kRows - 1);
-  std::normal_distribution<double> normal;
-  for (int k = 0; k < 50; ++k) {
-    Matrix M = Matrix::Identity(kRows, kRows);
-    for (int e = 0; e < kRows; ++e) {
-      const int i = row(random);
-      const int j = row(random);
-      if (i != j) {
-        M(i, j) = M(j, i) = 0.2;
-      }
-    }
-    for (int e = 0; e < kRows; ++e) {
-      const int i = row(random);
-      const int j = row(random);
-      M(i, j) = i != j && M(i, j) == 0.0 && M(j, i) == 0.0 ? 0.009 : M(i, j);
-    }
-    Problem problem;
-    problem.M = SparseMatrix(M.sparseView());
-    problem.q = Vector::NullaryExpr(kRows, [&] { return normal(random); });
-    const Result result = solve(problem);
-    EXPECT_EQ(result.status, Status::kSolved) << result.detail;
-    EXPECT_LE(result.statistics.pivots, 30);
-  }
-}
-
 #ifdef SIGNORINI_HAS_GMP
 /// Small integers: degenerate and redundant throughout, exact ties, many infeasible.
 TEST(StructuredLemke, SmallIntegerProblemsAgreeWithExactArithmetic) {
