@@ -1,3 +1,4 @@
+#include <signorini/lcp/weighted_product.h>
 #include <signorini/lcp/whitened_rows.h>
 
 #include <algorithm>
@@ -6,6 +7,7 @@
 #include <limits>
 #include <numeric>
 #include <stdexcept>
+#include <type_traits>
 
 namespace signorini::lcp {
 namespace {
@@ -14,8 +16,8 @@ namespace {
 // out: it contributes its square to G G^T, whose diagonal is one.
 constexpr double kNoMotion = 1e-11;
 
-// The two lengths of an entry that the compiler gets to unroll: a free body, and one that its rows
-// move in three directions only.
+// The longest and the shortest entry that the compiler gets to unroll: a free body, and one that
+// its rows move in three directions only.
 constexpr int kFree = 6;
 constexpr int kThree = 3;
 
@@ -68,45 +70,73 @@ inline void add_outer(const Rows& rows, const double* d, int size, int columns, 
   }
 }
 
-/// The same of kSize x kSize: out is read and written once.
-template <int kSize, bool kLower>
-inline void add_outer_square(const Rows& rows, const double* d, double* out, const int* starts) {
-  if (rows.count == 1) {
-    add_outer<kLower>(rows, d, kSize, kSize, out, starts);
-    return;
-  }
-  double block[kSize * kSize];
-  for (int c = 0; c < kSize; ++c) {
-    for (int r = kLower ? c : 0; r < kSize; ++r) {
-      block[c * kSize + r] = out[starts[c] + r];
+/// The same of 3 x 3: out is read and written once.
+template <bool kLower>
+inline void add_outer_of_three(const Rows& rows, const double* d, double* out, const int* starts) {
+  double block[kThree * kThree];
+  for (int c = 0; c < kThree; ++c) {
+    for (int r = kLower ? c : 0; r < kThree; ++r) {
+      block[c * kThree + r] = out[starts[c] + r];
     }
   }
   for (int i = 0; i < rows.count; ++i) {
     const double* one = rows.one + i * rows.width;
     const double* other = rows.other + i * rows.width;
-    for (int c = 0; c < kSize; ++c) {
+    for (int c = 0; c < kThree; ++c) {
       const double value = d[i] * other[c];
-      for (int r = kLower ? c : 0; r < kSize; ++r) {
-        block[c * kSize + r] += value * one[r];
+      for (int r = kLower ? c : 0; r < kThree; ++r) {
+        block[c * kThree + r] += value * one[r];
       }
     }
   }
-  for (int c = 0; c < kSize; ++c) {
-    for (int r = kLower ? c : 0; r < kSize; ++r) {
-      out[starts[c] + r] = block[c * kSize + r];
+  for (int c = 0; c < kThree; ++c) {
+    for (int r = kLower ? c : 0; r < kThree; ++r) {
+      out[starts[c] + r] = block[c * kThree + r];
     }
   }
+}
+
+/// The same of up to 8 x 8, by the instructions of the machine.
+template <bool kLower>
+inline void add_outer_by_kernel(const Rows& rows, const double* d, int size, int columns,
+                                double* out, const int* starts) {
+  static const WeightedProduct& product = weighted_products().front();
+  constexpr int kLd = WeightedProduct::kSize;
+  double block[kLd * kLd];
+  product.multiply(block, rows.one, rows.other, rows.width, d, rows.count, columns);
+  const auto add_block = [&](int count) {  // unrolled where it is known
+    for (int c = 0; c < columns; ++c) {
+      double* column = out + starts[c];
+      for (int r = kLower ? c : 0; r < count; ++r) {
+        column[r] += block[c * kLd + r];
+      }
+    }
+  };
+  size == kFree ? add_block(kFree) : add_block(size);
 }
 
 template <bool kLower>
 inline void add_outer_fast(const Rows& rows, const double* d, int size, int columns, double* out,
                            const int* starts) {
-  if (size == kThree && columns == kThree) {
-    add_outer_square<kThree, kLower>(rows, d, out, starts);
-  } else if (size == kFree && columns == kFree) {
-    add_outer_square<kFree, kLower>(rows, d, out, starts);
-  } else {
+  constexpr int kMost = WeightedProduct::kSize;
+  if (rows.count == 1 || size > kMost || columns > kMost) {
     add_outer<kLower>(rows, d, size, columns, out, starts);
+  } else if (size == kThree && columns == kThree) {
+    add_outer_of_three<kLower>(rows, d, out, starts);
+  } else {
+    add_outer_by_kernel<kLower>(rows, d, size, columns, out, starts);
+  }
+}
+
+/// Calls call(size), size a constant that the compiler gets to unroll. @return false if it is none
+template <typename Call>
+inline bool with_known_size(int size, Call call) {
+  switch (size) {
+    case kThree: call(std::integral_constant<int, kThree>{}); return true;
+    case 4: call(std::integral_constant<int, 4>{}); return true;
+    case 5: call(std::integral_constant<int, 5>{}); return true;
+    case kFree: call(std::integral_constant<int, kFree>{}); return true;
+    default: return false;
   }
 }
 
@@ -237,6 +267,7 @@ void WhitenedRows::take_over(const FactoredMatrix& A, std::span<const int> group
   }
   groups_.push_back(
       {A.rows(), static_cast<int>(entries_.size()), static_cast<int>(values_.size()), 0});
+  values_.resize(values_.size() + WeightedProduct::kSize, 0.0);
 }
 
 void WhitenedRows::find_roots(const BlockMass& mass) {
@@ -308,33 +339,40 @@ void WhitenedRows::scale_rows(const FactoredMatrix& A) {
   }
 }
 
-/// Gram-Schmidt, twice: adds to Q what the row moves the body in and Q does not span.
-void WhitenedRows::extend_basis(int body, const double* row) {
-  const int start = root_start_[body];
-  const int d = static_cast<int>(std::lround(std::sqrt(root_start_[body + 1] - start)));
-  const int rank = rank_[body];
-  double* Q = basis_.data() + start;
-  std::copy_n(row, d, work_.data());
-  double before = dot(row, row, d);
-  for (int pass = 0; pass < 4; ++pass) {
-    for (int c = 0; c < rank; ++c) {
-      add(-dot(Q + c * d, work_.data(), d), Q + c * d, work_.data(), d);
+/// Gram-Schmidt, twice (Q's columns at once: their products do not wait for each other): adds to Q
+/// what the row moves the body in and Q does not span.
+void WhitenedRows::extend_basis(int body, int dimension, const double* row) {
+  double* Q = basis_.data() + root_start_[body];
+  double* left = work_.data();
+  double* products = left + dimension;
+  const auto extend = [&](int d) {  // unrolled where it is known
+    const int rank = rank_[body];
+    std::copy_n(row, d, left);
+    double before = dot(row, row, d);
+    for (int pass = 0; pass < 4; ++pass) {
+      for (int c = 0; c < rank; ++c) {
+        products[c] = dot(Q + c * d, left, d);
+      }
+      for (int c = 0; c < rank; ++c) {
+        add(-products[c], Q + c * d, left, d);
+      }
+      const double after = dot(left, left, d);
+      if (!(after > kNoMotion * kNoMotion)) {
+        return;
+      }
+      const bool settled = after > 0.25 * before;  // little was left to remove: orthogonal to Q
+      before = after;
+      if (settled) {
+        break;
+      }
     }
-    const double after = dot(work_.data(), work_.data(), d);
-    if (!(after > kNoMotion * kNoMotion)) {
-      return;
+    const double length = std::sqrt(before);
+    for (int k = 0; k < d; ++k) {
+      Q[rank * d + k] = left[k] / length;
     }
-    const bool settled = after > 0.25 * before;  // little was left to remove: orthogonal to Q
-    before = after;
-    if (settled) {
-      break;
-    }
-  }
-  const double length = std::sqrt(before);
-  for (int k = 0; k < d; ++k) {
-    Q[rank * d + k] = work_[k] / length;
-  }
-  ++rank_[body];
+    ++rank_[body];
+  };
+  dimension == kFree ? extend(kFree) : extend(dimension);
 }
 
 /// Finds Q, writes every row in its coordinates and closes the gaps that leaves.
@@ -346,13 +384,13 @@ void WhitenedRows::compress(const BlockMass& mass) {
   for (int k = 0; k < bodies; ++k) {
     largest = std::max(largest, mass.dimension(k));
   }
-  work_.resize(std::max(largest, 1));
+  work_.resize(std::max(2 * largest, 1));
   for (int g = 0; g < groups(); ++g) {
     const double* row = values_.data() + groups_[g].values;
     for (int i = 0; i < group_rows(g); ++i, row += groups_[g].width) {
       for (int e = groups_[g].entry; e < groups_[g + 1].entry; ++e) {
         if (rank_[entries_[e].body] < entries_[e].dimension) {
-          extend_basis(entries_[e].body, row + entries_[e].column);
+          extend_basis(entries_[e].body, entries_[e].dimension, row + entries_[e].column);
         }
       }
     }
@@ -378,9 +416,12 @@ void WhitenedRows::compress(const BlockMass& mass) {
         if (rank == d) {
           std::copy_n(work_.data(), d, out);
         } else {
-          for (int c = 0; c < rank; ++c) {
-            out[c] = dot(Q + c * d, work_.data(), d);
-          }
+          const auto multiply = [&](int size) {
+            for (int c = 0; c < rank; ++c) {
+              out[c] = dot(Q + c * size, work_.data(), size);
+            }
+          };
+          d == kFree ? multiply(kFree) : multiply(d);
         }
         out += rank;
       }
@@ -416,7 +457,7 @@ void WhitenedRows::find_bundles() {
                   0, {}};
     const std::span<const Entry> parts = entries_of(g);
     const int size = parts.empty() ? 0 : parts.front().dimension;
-    if ((size == kThree || size == kFree) && parts.size() <= 2 && parts.back().dimension == size) {
+    if (size >= kThree && size <= kFree && parts.size() <= 2 && parts.back().dimension == size) {
       bundle.parts = static_cast<int>(parts.size());
       bundle.size = size;
       bundle.offset = {parts.front().offset, parts.back().offset};
@@ -513,20 +554,14 @@ void WhitenedRows::transpose_times(const Vector& x, Vector& u) const {
     const double* row = values_.data() + bundle.values;
     const double* of_rows = x.data() + bundle.row;
     const std::array<double*, 2> to = {u.data() + bundle.offset[0], u.data() + bundle.offset[1]};
-    if (bundle.size == kThree && bundle.parts == 2) {
-      add_transpose<kThree, 2>(row, bundle.rows, of_rows, to);
-    } else if (bundle.size == kFree && bundle.parts == 2) {
-      add_transpose<kFree, 2>(row, bundle.rows, of_rows, to);
-    } else if (bundle.size == kThree) {
-      add_transpose<kThree, 1>(row, bundle.rows, of_rows, to);
-    } else if (bundle.size == kFree) {
-      add_transpose<kFree, 1>(row, bundle.rows, of_rows, to);
-    } else {
-      for (int i = 0; i < bundle.rows; ++i) {
-        for (const Entry& part : entries_of(bundle.group)) {
-          add(of_rows[i], row, u.data() + part.offset, part.dimension);
-          row += part.dimension;
-        }
+    const bool is_known = with_known_size(bundle.size, [&](auto size) {
+      bundle.parts == 2 ? add_transpose<size, 2>(row, bundle.rows, of_rows, to)
+                        : add_transpose<size, 1>(row, bundle.rows, of_rows, to);
+    });
+    for (int i = 0; !is_known && i < bundle.rows; ++i) {
+      for (const Entry& part : entries_of(bundle.group)) {
+        add(of_rows[i], row, u.data() + part.offset, part.dimension);
+        row += part.dimension;
       }
     }
   }
@@ -539,23 +574,17 @@ void WhitenedRows::times(const Vector& u, Vector& y) const {
     double* of_rows = y.data() + bundle.row;
     const std::array<const double*, 2> from = {u.data() + bundle.offset[0],
                                                u.data() + bundle.offset[1]};
-    if (bundle.size == kThree && bundle.parts == 2) {
-      multiply<kThree, 2>(row, bundle.rows, from, of_rows);
-    } else if (bundle.size == kFree && bundle.parts == 2) {
-      multiply<kFree, 2>(row, bundle.rows, from, of_rows);
-    } else if (bundle.size == kThree) {
-      multiply<kThree, 1>(row, bundle.rows, from, of_rows);
-    } else if (bundle.size == kFree) {
-      multiply<kFree, 1>(row, bundle.rows, from, of_rows);
-    } else {
-      for (int i = 0; i < bundle.rows; ++i) {
-        double sum = 0.0;
-        for (const Entry& part : entries_of(bundle.group)) {
-          sum += dot(row, u.data() + part.offset, part.dimension);
-          row += part.dimension;
-        }
-        of_rows[i] = sum;
+    const bool is_known = with_known_size(bundle.size, [&](auto size) {
+      bundle.parts == 2 ? multiply<size, 2>(row, bundle.rows, from, of_rows)
+                        : multiply<size, 1>(row, bundle.rows, from, of_rows);
+    });
+    for (int i = 0; !is_known && i < bundle.rows; ++i) {
+      double sum = 0.0;
+      for (const Entry& part : entries_of(bundle.group)) {
+        sum += dot(row, u.data() + part.offset, part.dimension);
+        row += part.dimension;
       }
+      of_rows[i] = sum;
     }
   }
 }
@@ -611,7 +640,8 @@ const SparseMatrix& WhitenedRows::body_space_matrix(std::span<const double> bloc
   const double* D = blocks.data();
   return assemble([this, &D](const Bundle& bundle, double* out, const int* pair) {
     const double* G = values_.data() + bundle.values;
-    work_.assign(static_cast<std::size_t>(bundle.rows) * bundle.width, 0.0);  // D G, row by row
+    const std::size_t numbers = static_cast<std::size_t>(bundle.rows) * bundle.width;
+    work_.assign(numbers + WeightedProduct::kSize, 0.0);  // D G, row by row
     const double* of_group = G;
     double* DG = work_.data();
     for (int g = bundle.group; g < bundle.group + bundle.groups; ++g) {

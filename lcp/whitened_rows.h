@@ -98,7 +98,7 @@ class WhitenedRows {
   void find_roots(const BlockMass& mass);
   void scale_rows(const FactoredMatrix& A);
   void compress(const BlockMass& mass);
-  void extend_basis(int body, const double* row);
+  void extend_basis(int body, int dimension, const double* row);
   void set_pattern(int bodies);
   void find_bundles();
   template <typename AddBundle>

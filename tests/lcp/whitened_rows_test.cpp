@@ -1,4 +1,5 @@
 #include <signorini/lcp/sparse_cholesky.h>
+#include <signorini/lcp/weighted_product.h>
 #include <signorini/lcp/whitened_rows.h>
 
 #include <bench/contact_families.h>
@@ -69,6 +70,98 @@ TEST(WhitenedRows, BodySpaceMatrixIsIdentityPlusWeightedSquares) {
   const Matrix H = Matrix(rows.body_space_matrix(d)).selfadjointView<Eigen::Lower>();
   const Matrix expected = Matrix::Identity(G.cols(), G.cols()) + G.transpose() * d.asDiagonal() * G;
   EXPECT_LE((H - expected).cwiseAbs().maxCoeff(), 1e-13 * expected.cwiseAbs().maxCoeff());
+}
+
+/// `count` bodies in a ring, each moved by rows in `ranks` directions (of 6), one after the other;
+/// `contacts` rows a pair, and one contact of a body with what does not move.
+FactoredMatrix ring(const std::vector<int>& ranks, int contacts) {
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
+  FactoredMatrix A;
+  std::vector<Matrix> directions;
+  for (const int rank : ranks) {
+    A.mass.add_inverse(Matrix::Identity(6, 6));
+    directions.emplace_back(Matrix::NullaryExpr(6, rank, [&] { return normal(random); }));
+  }
+  const auto add = [&](int body) {
+    const Vector parts =
+        Vector::NullaryExpr(directions[body].cols(), [&] { return normal(random); });
+    A.add_entry(body, directions[body] * parts);
+  };
+  const int count = static_cast<int>(ranks.size());
+  for (int b = 0; b < count; ++b) {
+    for (int k = 0; k < contacts; ++k) {
+      A.add_row();
+      add(b);
+      add((b + 1) % count);
+    }
+  }
+  for (int k = 0; k < contacts; ++k) {
+    A.add_row();
+    add(0);
+  }
+  return A;
+}
+
+TEST(WhitenedRows, AllRanksOfBodiesAlikeAndMixed) {
+  const std::vector<std::vector<int>> all_ranks = {{1, 1, 1}, {2, 2, 2}, {3, 3, 3},
+                                                   {4, 4, 4}, {5, 5, 5}, {6, 6, 6},
+                                                   {6, 5, 4}, {3, 6, 1}, {5, 2, 6}};
+  std::mt19937_64 random(12);
+  std::uniform_real_distribution<double> uniform(0.0, 10.0);
+  for (const std::vector<int>& ranks : all_ranks) {
+    for (const int contacts : {1, 2, 7, 12}) {
+      const FactoredMatrix A = ring(ranks, contacts);
+      WhitenedRows rows;
+      rows.set(A);
+      EXPECT_LE(rows.degrees_of_freedom(), ranks[0] + ranks[1] + ranks[2]);
+      const Matrix G = dense_rows(rows);
+      const Matrix S = rows.scale().asDiagonal();
+      const Matrix formed(A.form());
+      EXPECT_LE((S * G * G.transpose() * S - formed).cwiseAbs().maxCoeff(),
+                1e-13 * formed.cwiseAbs().maxCoeff());
+      const Vector x = Vector::NullaryExpr(G.rows(), [&] { return uniform(random); });
+      Vector u;
+      rows.transpose_times(x, u);
+      EXPECT_LE((u - G.transpose() * x).cwiseAbs().maxCoeff(), 1e-14 * x.lpNorm<1>());
+      const Matrix H = Matrix(rows.body_space_matrix(x)).selfadjointView<Eigen::Lower>();
+      const Matrix expected =
+          Matrix::Identity(G.cols(), G.cols()) + G.transpose() * x.asDiagonal() * G;
+      EXPECT_LE((H - expected).cwiseAbs().maxCoeff(), 1e-13 * expected.cwiseAbs().maxCoeff())
+          << ranks[0] << ' ' << ranks[1] << ' ' << ranks[2] << ", " << contacts;
+    }
+  }
+}
+
+TEST(WeightedProduct, IsThatToTheBitOfEveryInstructionSet) {
+  constexpr int kSize = WeightedProduct::kSize;
+  constexpr int kWidth = 13;
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  for (const int rows : {0, 1, 2, 4, 9}) {
+    const auto number = [&] { return normal(random); };
+    const Matrix left = Matrix::NullaryExpr(kWidth, rows + 1, number);
+    const Matrix right = Matrix::NullaryExpr(kWidth, rows + 1, number);
+    const Vector d = Vector::NullaryExpr(rows, number);
+    for (int columns = 0; columns <= kSize; ++columns) {
+      Matrix wanted = Matrix::Zero(kSize, columns);
+      for (int k = 0; k < rows; ++k) {
+        for (int c = 0; c < columns; ++c) {
+          for (int r = 0; r < kSize; ++r) {  // rounded before it is added
+            const volatile double product = (left(2 + r, k) * d[k]) * right(1 + c, k);
+            wanted(r, c) += product;
+          }
+        }
+      }
+      for (const WeightedProduct& set : weighted_products()) {
+        Matrix block = Matrix::Constant(kSize, columns + 1, 7.0);
+        set.multiply(block.data(), left.data() + 2, right.data() + 1, kWidth, d.data(), rows,
+                     columns);
+        EXPECT_EQ(block.leftCols(columns), wanted) << set.name << ", " << rows << ", " << columns;
+        EXPECT_EQ(block.col(columns), Vector::Constant(kSize, 7.0));
+      }
+    }
+  }
 }
 
 /// Three rows a contact: the rows of a family as normals, and two more directions on its bodies.
