@@ -74,6 +74,8 @@ bool ProximalNewton::step(ScaledProblem& problem, BodySpaceSystem& system, doubl
                           int most_factorizations, const Deadline& deadline) {
   constexpr int kMostNewtonSteps = 30;
   constexpr int kMostStale = 4;
+  constexpr double kFalls = 0.1;  // what refining an exact step must leave to be worth another
+  constexpr double kWholeStep = 1e-6;
   constexpr double kVanished = 1e-10;  // of the first gradient: rounding, and rows on their bounds
   const WhitenedRows& rows = system.rows();
   point_ = x_;
@@ -82,6 +84,8 @@ bool ProximalNewton::step(ScaledProblem& problem, BodySpaceSystem& system, doubl
   e_.resize(rows.rows());
   double first = 0.0;
   double least = kInfinity;
+  double last = kInfinity;
+  bool is_exact = false;  // the last step, but for rounding, if no row reaches or leaves a bound
   int stale = 0;  // steps since the least gradient: phi falls, its gradient may grow for a while
   for (int newton = 0;; ++newton) {
     dual_gradient(problem, rows, velocity_, gradient_);
@@ -102,6 +106,11 @@ bool ProximalNewton::step(ScaledProblem& problem, BodySpaceSystem& system, doubl
       const double x = point_[i] + change_[i];
       e_[i] = x > problem.lower()[i] && x < problem.upper()[i] ? 0.0 : kInfinity;
     }
+    if (is_exact && e_ == last_e_ && !(size < kFalls * last)) {
+      break;
+    }
+    last_e_ = e_;
+    last = size;
     if (!system.factor(e_, proximal)) {
       return false;
     }
@@ -112,6 +121,7 @@ bool ProximalNewton::step(ScaledProblem& problem, BodySpaceSystem& system, doubl
       return false;
     }
     velocity_ += t * direction_;
+    is_exact = std::abs(t - 1.0) < kWholeStep;
   }
   x_ = (point_ + change_).cwiseMax(problem.lower()).cwiseMin(problem.upper());
   return true;

@@ -44,7 +44,7 @@ class ProximalNewton {
   double line_search(const ScaledProblem& problem, const WhitenedRows& rows);
 
   Vector x_, point_, base_slack_, weight_, velocity_, slack_, change_, gradient_, direction_,
-      g_direction_, e_;
+      g_direction_, e_, last_e_;
   std::vector<std::pair<double, double>> breaks_;
 };
 
