@@ -2,6 +2,8 @@
 
 #include <signorini/lcp/types.h>
 
+#include <algorithm>
+#include <type_traits>
 #include <vector>
 
 namespace signorini::lcp {
@@ -79,12 +81,20 @@ void BlockMass::apply_inverse(int block, const Scalar* x, Scalar* y) const {
   if (!is_factor) {
     constexpr int kRigidBody = 6;
     const auto multiply = [v, x, y](int size) {  // unrolled where the size is known
-      for (int i = 0; i < size; ++i) {
-        y[i] = 0;
-      }
-      for (int j = 0; j < size; ++j) {
+      if constexpr (std::is_same_v<Scalar, double>) {
+        std::fill_n(y, size, 0.0);
+        for (int j = 0; j < size; ++j) {
+          for (int i = 0; i < size; ++i) {
+            y[i] += v[j * size + i] * x[j];
+          }
+        }
+      } else {  // others are dear to store
         for (int i = 0; i < size; ++i) {
-          y[i] += v[j * size + i] * x[j];
+          Scalar sum = 0;
+          for (int j = 0; j < size; ++j) {
+            sum += v[j * size + i] * x[j];
+          }
+          y[i] = sum;
         }
       }
     };

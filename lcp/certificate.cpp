@@ -175,20 +175,43 @@ void Certifier::find_bounds(const Problem& problem) {
   }
 }
 
-Certifier::Measure Certifier::measure_row(Index i) const {
+inline void Certifier::Total::add_row(long double row_size, double q, long double z) {
+  is_zero = is_zero && z == 0.0L;
+  size = std::max(size, row_size);
+  natural_size = std::max(natural_size, row_size);
+  q_inf = std::max(q_inf, std::abs(q));
+}
+
+inline void Certifier::Total::add_group(int row, const Measure& measure) {
+  const auto least = [](double a, double b) { return b < a || std::isnan(a) ? b : a; };
+  const auto largest = [](double a, double b) { return b > a || std::isnan(a) ? b : a; };
+  most.natural = std::max(most.natural, measure.natural);
+  if (measure.unit_free > most.unit_free || worst_row < 0) {
+    most.unit_free = measure.unit_free;
+    worst_row = row;
+  }
+  most.backward = std::max(most.backward, measure.backward);
+  most.z_dot_w += measure.z_dot_w;
+  most.min_z = least(most.min_z, measure.min_z);
+  most.min_w = least(most.min_w, measure.min_w);
+  most.cone_violation = largest(most.cone_violation, measure.cone_violation);
+  size = std::max(size, measure.scaled_boundary);
+  natural_size = std::max(natural_size, measure.boundary);
+}
+
+inline Certifier::Measure Certifier::measure_row(Index i) const {
   const long double z = z_[i];
   const long double w = w_[i];
-  const long double lower = bounds_[i].lower;
-  const long double upper = bounds_[i].upper;
-  const auto step = [&](long double scale) {  // 0 exactly where the row is solved
-    const long double moved = z - w / scale;
-    const long double clamped = std::min(std::max(moved, lower), upper);
-    return std::abs(clamped == moved ? w / scale : z - clamped);
+  const auto [lower, upper] = bounds_[i];
+  // s r(s): 0 exactly where the row is solved. Arithmetic with infinities is slow in long double.
+  const auto scaled_step = [&](long double s) {
+    const long double from_upper = upper < kInfinity ? std::max(w, s * (z - upper)) : w;
+    return std::abs(lower > -kInfinity ? std::min(from_upper, s * (z - lower)) : from_upper);
   };
   const long double d = scale_[i];
   Measure row;
-  row.natural = step(1.0L);
-  row.unit_free = d * step(d);
+  row.natural = scaled_step(1.0L);
+  row.unit_free = scaled_step(d);
   row.backward = row.unit_free > 0.0L ? row.unit_free / (d * std::abs(z) + size_[i]) : 0.0L;
   if (lower == 0.0L && upper == kInfinity) {
     row.z_dot_w = z * w;
@@ -304,30 +327,6 @@ bool Certifier::measure(const Problem& problem, const VectorRef& z,
     total.add_group(static_cast<int>(i), measure);
   }
   return true;
-}
-
-void Certifier::Total::add_row(long double row_size, double q, long double z) {
-  is_zero = is_zero && z == 0.0L;
-  size = std::max(size, row_size);
-  natural_size = std::max(natural_size, row_size);
-  q_inf = std::max(q_inf, std::abs(q));
-}
-
-void Certifier::Total::add_group(int row, const Measure& measure) {
-  const auto least = [](double a, double b) { return b < a || std::isnan(a) ? b : a; };
-  const auto largest = [](double a, double b) { return b > a || std::isnan(a) ? b : a; };
-  most.natural = std::max(most.natural, measure.natural);
-  if (measure.unit_free > most.unit_free || worst_row < 0) {
-    most.unit_free = measure.unit_free;
-    worst_row = row;
-  }
-  most.backward = std::max(most.backward, measure.backward);
-  most.z_dot_w += measure.z_dot_w;
-  most.min_z = least(most.min_z, measure.min_z);
-  most.min_w = least(most.min_w, measure.min_w);
-  most.cone_violation = largest(most.cone_violation, measure.cone_violation);
-  size = std::max(size, measure.scaled_boundary);
-  natural_size = std::max(natural_size, measure.boundary);
 }
 
 bool Certifier::Total::needs_exactness() const {

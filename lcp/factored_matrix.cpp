@@ -77,6 +77,9 @@ template <typename Scalar>
 void FactoredMatrix::transpose_times(const Scalar* z, Scalar* p) const {
   std::fill(p, p + degrees_of_freedom(), Scalar(0));
   for (int i = 0; i < rows(); ++i) {
+    if (z[i] == Scalar(0)) {  // contacts that do not press
+      continue;
+    }
     for (const Entry& entry : entries(i)) {
       Scalar* target = p + mass.offset(entry.block);
       const int dimension = mass.dimension(entry.block);
