@@ -43,7 +43,7 @@ class AlartCurnier::Workspace {
   Inner newton(const AlartCurnierSettings& settings, double alpha, double error, double tolerance);
   double evaluate(double alpha, const Vector& x);
   double violation();
-  [[nodiscard]] bool solved() const {
+  [[nodiscard]] bool solved() {
     return is_solved(judge(best_.certificate(), tolerance_, Status::kStalled));
   }
   [[nodiscard]] bool exhausted() const {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace signorini::lcp {
 namespace {
@@ -15,11 +16,13 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Index kSmall = 100;                 // rows up to which dense pivoting is the fastest
 constexpr Index kSmallCold = 48;              // the same, of a factored M without a start
+constexpr Index kSmallCycles = 72;            // the same, where bodies are in cycles and differ
 constexpr Index kSingleContactRows = 180;     // up to which a guess and pivots beat Newton's steps
 constexpr int kPivotsFromAGuess = 360;        // then it was none
 constexpr Index kStructuredLemkeRows = 2000;  // a pivot costs up to n^2 / 2
 constexpr Index kLemkeRows = 1000;            // the same, with larger constants
 constexpr double kMassRatioForSweeps = 1e3;   // above it sweeps stall
+constexpr std::size_t kAttemptsKept = 16;     // no chain is longer
 constexpr int kFirstSweeps = 48;
 constexpr int kConeInteriorSteps = 30;  // where nothing slides about ten are enough
 constexpr int kSetsForLastDigits = 2;
@@ -44,10 +47,8 @@ void add(int& sum, int counter) {
   }
 }
 
-/// Whether few rows are on the same bodies as the row before: one contact a pair. (A ball between
-/// walls has two with what does not move.)
-bool has_single_contacts(const FactoredMatrix& A) {
-  constexpr int kFew = 8;  // one in so many
+/// Rows that are on the same bodies as the row before.
+int repeated_pairs(const FactoredMatrix& A) {
   const auto same_block = [](const FactoredMatrix::Entry& a, const FactoredMatrix::Entry& b) {
     return a.block == b.block;
   };
@@ -55,7 +56,21 @@ bool has_single_contacts(const FactoredMatrix& A) {
   for (int i = 1; i < A.rows(); ++i) {
     same += std::ranges::equal(A.entries(i - 1), A.entries(i), same_block) ? 1 : 0;
   }
-  return kFew * same <= A.rows();
+  return same;
+}
+
+/// One contact a pair, about: a ball between walls has two with what does not move.
+bool has_single_contacts(const FactoredMatrix& A) {
+  constexpr int kFew = 8;  // one in so many
+  return kFew * repeated_pairs(A) <= A.rows();
+}
+
+/// More pairs than bodies, which is a wall or a pyramid and not a tower, and some bodies far
+/// heavier than others: which contacts press is then not seen from the first steps.
+bool has_cycles_and_heavy_bodies(const FactoredMatrix& A) {
+  constexpr double kAlike = 100.0;
+  const int pairs = A.rows() - repeated_pairs(A);
+  return pairs > A.mass.block_count() && mass_ratio(A.mass) > kAlike;
 }
 
 }  // namespace
@@ -70,6 +85,7 @@ void AutoSettings::validate() const {
 
 AutoSolver::AutoSolver(const AutoSettings& settings) : settings_(settings) {
   settings_.validate();
+  old_attempts_.reserve(kAttemptsKept);
 }
 
 std::string AutoSolver::refuses(const Problem&) const {
@@ -92,7 +108,10 @@ void AutoSolver::choose(const Problem& problem) {
     chain_.push_back({"structured-lemke", "one contact a pair of bodies", kPivotsFromAGuess, true});
   }
   if (symmetric && n <= kSmall) {
-    if (factored && !has_start_ && n > kSmallCold) {
+    const bool newton_first =
+        factored && !has_start_ && n > kSmallCold &&
+        !(n <= kSmallCycles && has_cycles_and_heavy_bodies(std::get<FactoredMatrix>(problem.M)));
+    if (newton_first) {
       chain_.push_back({"interior-point", "factored, from no start"});
     }
     chain_.push_back({"dantzig", "symmetric and small", -1, true});
@@ -147,43 +166,59 @@ void AutoSolver::choose_for_cones(const Problem& problem) {
   chain_.push_back({"nsgs", "friction cones"});
 }
 
-Solver& AutoSolver::solver(std::string_view name, int max_iterations, double time_left) {
+Solver& AutoSolver::solver(std::string_view name, int max_iterations) {
   const auto same = [&](const Made& made) {
     return made.name == name && made.max_iterations == max_iterations;
   };
-  auto found = std::ranges::find_if(made_, same);
-  if (found != made_.end() && !std::isfinite(settings_.time_limit)) {
+  const auto found = std::ranges::find_if(made_, same);
+  if (found != made_.end()) {
     return *found->solver;
   }
   SolverSettings own = settings_;
   own.max_iterations = max_iterations;
-  own.time_limit = time_left;
   own.recorder = nullptr;  // told of the whole solve, not of its attempts
   own.certify_islands = false;
-  if (found == made_.end()) {
-    made_.push_back({name, max_iterations, nullptr});
-    found = std::prev(made_.end());
+  made_.push_back({name, max_iterations, make_solver(name, own)});
+  return *made_.back().solver;
+}
+
+void AutoSolver::recycle(std::vector<Attempt>& attempts) {
+  while (!attempts.empty() && old_attempts_.size() < old_attempts_.capacity()) {
+    old_attempts_.push_back(std::move(attempts.back()));
+    attempts.pop_back();
   }
-  found->solver = make_solver(name, own);
-  return *found->solver;
+}
+
+void AutoSolver::note_attempt(const Step& step, Result& result) {
+  Attempt attempt;
+  if (!old_attempts_.empty()) {
+    attempt = std::move(old_attempts_.back());
+    old_attempts_.pop_back();
+  }
+  attempt.solver = step.solver;
+  attempt.reason = step.reason;
+  attempt.status = one_.status;
+  attempt.natural_residual = one_.certificate.natural_residual;
+  attempt.unit_free_residual = one_.certificate.unit_free_residual;
+  attempt.statistics = one_.statistics;
+  attempt.detail = one_.detail;
+  result.attempts.push_back(std::move(attempt));
 }
 
 bool AutoSolver::attempt(const Problem& problem, const Step& step, int max_iterations,
                          const Deadline& deadline, Result& result) {
-  const double left = settings_.time_limit - deadline.elapsed_seconds();
+  const double left = deadline.left_seconds();
   if (!(left > 0.0)) {
     return true;
   }
-  Solver& tried = solver(step.solver, max_iterations, left);
+  Solver& tried = solver(step.solver, max_iterations);
   if (!tried.refuses(problem).empty()) {
     return false;
   }
   const bool start_helps =
       step.solver != "interior-point" || best_solver_.empty() || best_merit_ <= kWarmEnough;
-  tried.solve(problem, one_, has_start_ && start_helps ? &start_ : nullptr);
-  result.attempts.push_back({step.solver, step.reason, one_.status,
-                             one_.certificate.natural_residual, one_.certificate.unit_free_residual,
-                             one_.statistics, one_.detail});
+  tried.solve_within(left, problem, one_, has_start_ && start_helps ? &start_ : nullptr);
+  note_attempt(step, result);
   add(result.statistics.iterations, one_.statistics.iterations);
   add(result.statistics.pivots, one_.statistics.pivots);
   add(result.statistics.factorizations, one_.statistics.factorizations);
@@ -261,21 +296,19 @@ Status AutoSolver::iterate(const Problem& problem, const Vector* warm_start,
     result.solver += ": ";
     result.solver += best_solver_;
   }
-  if (deadline.elapsed_seconds() >= settings_.time_limit) {
+  if (deadline.passed()) {
     return Status::kTimeLimit;
   }
   return result.ray.size() > 0 ? Status::kRayUnproven : one_.status;
 }
 
-/// An attempt that solved it was certified and judged on the same problem and z.
-void AutoSolver::certify_result(const Problem& problem, Status ending, Result& result) {
-  if (best_solver_.empty() || !is_solved(best_status_)) {
-    Solver::certify_result(problem, ending, result);
-    return;
+/// The best attempt certified the same z of the same problem.
+void AutoSolver::certify(const Problem& problem, Result& result) {
+  if (best_solver_.empty()) {
+    Solver::certify(problem, result);
+  } else {
+    result.certificate = best_certificate_;
   }
-  result.certificate = best_certificate_;
-  result.status = best_status_;
-  result.ray.resize(0);
 }
 
 }  // namespace signorini::lcp

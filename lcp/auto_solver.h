@@ -32,7 +32,8 @@ struct AutoSettings : SolverSettings {
 /// not tangential), alart-curnier, frictionless (if it was not tried, up to 2000 such rows), nsgs |
 /// | LCP, factored M, 48 < n <= 180, one contact a pair of bodies | structured-lemke (360 pivots;
 /// behind the sweeps of the row for n > 100), then as below |
-/// | symmetric M, n <= 100 | interior-point (factored M, from no start, n > 48), dantzig,
+/// | symmetric M, n <= 100 | interior-point (factored M, from no start, n > 48; not up to 72 where
+/// more pairs touch than there are bodies and masses differ by more than 100), dantzig,
 /// structured-lemke, alart-curnier, lemke, pgs |
 /// | factored M, n > 100 | nncg, for a few sweeps and then if they promise to end soon (with a
 /// tolerance of 1e-5 or more, or n > 5000; mass ratio <= 1e3), interior-point, alart-curnier,
@@ -52,7 +53,8 @@ struct AutoSettings : SolverSettings {
 ///   friction up to 1000 rows: interior-point all, alart-curnier those of towers;
 /// - factored M, up to 100 rows, by time (families, mass ratios 1 to 1e6): from no start
 ///   interior-point takes 1.2 times dantzig's at 40 rows, the same at 48, 0.7 at 64, 0.4 at 100;
-///   from a near one 1.7, 1.3, 1.2 and 0.6;
+///   from a near one 1.7, 1.3, 1.2 and 0.6. Plane pyramids with mass ratios of 1e3 and more: 1.0 to
+///   1.4 at 64, 0.4 to 0.7 at 100; towers 0.3 to 1.2;
 /// - one contact a pair of bodies (piles of spheres, mass ratios 1 to 1e6), by time: the guess of
 ///   structured-lemke's sweeps is 2 to 60 pivots off up to 160 rows; it takes 0.4 to 0.8 of
 ///   interior-point's time at 64 and 100 rows, 0.7 to 1.1 at 160, 0.5 to 1.4 at 200; where the
@@ -90,7 +92,8 @@ class AutoSolver : public Solver {
   const SolverSettings& settings() const override { return settings_; }
   Status iterate(const Problem& problem, const Vector* warm_start, const Deadline& deadline,
                  Result& result) override;
-  void certify_result(const Problem& problem, Status ending, Result& result) override;
+  void certify(const Problem& problem, Result& result) override;
+  void recycle(std::vector<Attempt>& attempts) override;
 
  private:
   struct Made {
@@ -106,15 +109,17 @@ class AutoSolver : public Solver {
   };
   void choose(const Problem& problem);
   void choose_for_cones(const Problem& problem);
-  Solver& solver(std::string_view name, int max_iterations, double time_left);
+  Solver& solver(std::string_view name, int max_iterations);
   /// @return true if nothing more need be tried.
   bool attempt(const Problem& problem, const Step& step, int max_iterations,
                const Deadline& deadline, Result& result);
   bool sweep(const Problem& problem, const Deadline& deadline, Result& result);
+  void note_attempt(const Step& step, Result& result);
 
   AutoSettings settings_;
   std::vector<Made> made_;
   std::vector<Step> chain_;
+  std::vector<Attempt> old_attempts_;  // memory for new ones
   bool sweeps_first_ = false;
   bool is_out_of_reach_ = false;  // no solution below a Z that no iteration reaches
   Result one_;                    // of the attempt

@@ -28,7 +28,7 @@ class ConeInteriorPoint::Workspace {
   [[nodiscard]] bool find_directions();
   [[nodiscard]] double gap_after(double step) const;
   [[nodiscard]] double longest_step() const;
-  [[nodiscard]] bool solved() const {
+  [[nodiscard]] bool solved() {
     return is_solved(judge(best_.certificate(), settings_.tolerance, Status::kStalled));
   }
   [[nodiscard]] Status polish(const Problem& problem, const Deadline& deadline,
@@ -177,11 +177,11 @@ Status ConeInteriorPoint::Workspace::follow_path(const Deadline& deadline, Stati
 /// Alart-Curnier from the best iterate.
 Status ConeInteriorPoint::Workspace::polish(const Problem& problem, const Deadline& deadline,
                                             Statistics& statistics) {
-  const double time_left = settings_.time_limit - deadline.elapsed_seconds();
+  const double time_left = deadline.left_seconds();
   if (!(time_left > 0.0)) {
     return Status::kTimeLimit;
   }
-  if (polisher_ == nullptr || std::isfinite(time_left)) {
+  if (polisher_ == nullptr) {
     AlartCurnierSettings settings;
     static_cast<SolverSettings&>(settings) = settings_;
     settings.recorder = nullptr;
@@ -189,11 +189,10 @@ Status ConeInteriorPoint::Workspace::polish(const Problem& problem, const Deadli
     settings.quick_certificate = true;
     settings.max_iterations = settings_.polish_steps;
     settings.proximal = 1e-6;
-    settings.time_limit = time_left;
     polisher_ = std::make_unique<AlartCurnier>(settings);
   }
   z_ = best_.z();
-  polisher_->solve(problem, polished_, &z_);
+  polisher_->solve_within(time_left, problem, polished_, &z_);
   best_.offer(polished_.z);
   statistics.factorizations += polished_.statistics.factorizations;
   statistics.factor_bytes = std::max(statistics.factor_bytes, polished_.statistics.factor_bytes);

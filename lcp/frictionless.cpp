@@ -90,13 +90,14 @@ void Frictionless::leave_friction_out(const Problem& problem) {
   take(problem.q, rows_, part_.q);
 }
 
-Status Frictionless::iterate(const Problem& problem, const Vector* warm_start, const Deadline&,
-                             Result& result) {
+Status Frictionless::iterate(const Problem& problem, const Vector* warm_start,
+                             const Deadline& deadline, Result& result) {
   leave_friction_out(problem);
   if (warm_start != nullptr) {
     take(*warm_start, rows_, start_);
   }
-  lemke_.solve(part_, answer_, warm_start != nullptr ? &start_ : nullptr);
+  lemke_.solve_within(deadline.left_seconds(), part_, answer_,
+                      warm_start != nullptr ? &start_ : nullptr);
   put(answer_.z, rows_, problem.size(), result.z);
   if (answer_.ray.size() > 0) {
     put(answer_.ray, rows_, problem.size(), result.ray);

@@ -2,6 +2,8 @@
 #include <signorini/lcp/ray.h>
 #include <signorini/lcp/solver.h>
 
+#include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -45,14 +47,18 @@ double Deadline::elapsed_seconds() const {
 }
 
 bool Deadline::passed() const {
-  return elapsed_seconds() > seconds_;
+  return elapsed_seconds() >= seconds_;
 }
 
-void Solver::certify_result(const Problem& problem, Status ending, Result& result) {
+void Solver::certify(const Problem& problem, Result& result) {
   result.certificate =
       settings().quick_certificate
           ? certifier_.certify_quickly(problem, result.z, settings().tolerance, &result.w)
           : certifier_.certify(problem, result.z, &result.w);
+}
+
+/// The status is `ending` unless the certificate, or what there is of a ray, says more.
+void Solver::judge_result(const Problem& problem, Status ending, Result& result) const {
   result.status = judge(result.certificate, settings().tolerance, ending);
   if (is_solved(result.status)) {
     result.ray.resize(0);
@@ -84,6 +90,11 @@ void Solver::record(const Problem& problem, const Vector* warm_start, Result& re
 }
 
 void Solver::solve(const Problem& problem, Result& result, const Vector* warm_start) {
+  solve_within(std::numeric_limits<double>::infinity(), problem, result, warm_start);
+}
+
+void Solver::solve_within(double seconds, const Problem& problem, Result& result,
+                          const Vector* warm_start) {
   check_shapes(problem);
   settings().validate();
   const Index n = problem.size();
@@ -94,7 +105,8 @@ void Solver::solve(const Problem& problem, Result& result, const Vector* warm_st
   if (const std::string why = refuses(problem); !why.empty()) {
     throw std::invalid_argument(std::string(name()) + ": " + why);
   }
-  const Deadline deadline(settings().time_limit);
+  recycle(result.attempts);
+  const Deadline deadline(std::min(settings().time_limit, seconds));
   start_result(n, result);
   result.solver = name();
   if (std::string bad = find_bad_value(problem); !bad.empty()) {
@@ -110,7 +122,8 @@ void Solver::solve(const Problem& problem, Result& result, const Vector* warm_st
       result.detail += result.detail.empty() ? "" : "; ";
       result.detail += "the iterate was not finite: z = 0 instead";
     }
-    certify_result(problem, is_solved(ending) ? Status::kNumericalBreakdown : ending, result);
+    certify(problem, result);
+    judge_result(problem, is_solved(ending) ? Status::kNumericalBreakdown : ending, result);
     if (settings().certify_islands) {
       certify_islands(problem, result);
     }

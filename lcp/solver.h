@@ -9,6 +9,7 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace signorini::lcp {
 
@@ -43,6 +44,8 @@ class Deadline {
   explicit Deadline(double seconds);
   [[nodiscard]] bool passed() const;
   [[nodiscard]] double elapsed_seconds() const;
+  /// Below 0 once it has passed.
+  [[nodiscard]] double left_seconds() const { return seconds_ - elapsed_seconds(); }
 
  private:
   std::chrono::steady_clock::time_point start_;
@@ -68,6 +71,11 @@ class Solver {
   /// @throws std::invalid_argument for wrong shapes, for wrong settings, and for a problem that
   /// refuses() names; result is then untouched. Bad values (NaN) end in kInvalidInput instead.
   void solve(const Problem& problem, Result& result, const Vector* warm_start = nullptr);
+  /// solve() as a part of something larger that has `seconds` of wall time left: ends by then, if
+  /// the time limit of the settings is not before. With 0 or less it ends at the first look at the
+  /// clock. Solver and workspace stay as they are, so that parts may share them.
+  void solve_within(double seconds, const Problem& problem, Result& result,
+                    const Vector* warm_start = nullptr);
 
  protected:
   virtual const SolverSettings& settings() const = 0;
@@ -78,12 +86,14 @@ class Solver {
   /// result.ray. Called with n >= 1 and finite data.
   virtual Status iterate(const Problem& problem, const Vector* warm_start, const Deadline& deadline,
                          Result& result) = 0;
-  /// Certifies result.z, judges it and its ray, and names the status: `ending` unless they say
-  /// more. A solver whose z was certified already, by the solver that it handed the same problem
-  /// to, may take that certificate over.
-  virtual void certify_result(const Problem& problem, Status ending, Result& result);
+  /// Fills certificate and w of result.z. A solver whose z was certified on the way, as its
+  /// settings say, may take that over.
+  virtual void certify(const Problem& problem, Result& result);
+  /// What is in the result from before, whose texts have room to write new ones into.
+  virtual void recycle(std::vector<Attempt>& /*attempts*/) {}
 
  private:
+  void judge_result(const Problem& problem, Status ending, Result& result) const;
   void record(const Problem& problem, const Vector* warm_start, Result& result) const;
   void certify_islands(const Problem& problem, Result& result);
 

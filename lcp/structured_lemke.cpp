@@ -54,8 +54,8 @@ Status StructuredLemke::iterate(const Problem& problem, const Vector* warm_start
                                 const Deadline& deadline, Result& result) {
   pivots_ = refinements_ = factorizations_ = double_exchanges_ = 0;
   best_.reset(problem, settings_.tolerance);
-  result.z = best_.z();
   if (!scaled_.assign(problem)) {
+    result.z = best_.z();
     result.detail = "M is not finite once it is formed and scaled";
     return Status::kNumericalBreakdown;
   }
@@ -85,19 +85,28 @@ Status StructuredLemke::iterate(const Problem& problem, const Vector* warm_start
   result.statistics.pivots = pivots_;
   result.statistics.factorizations = factorizations_;
   result.statistics.refinements = refinements_;
-  const auto say = [&result](const std::string& what) {
-    result.detail += (result.detail.empty() ? "" : "; ") + what;
+  describe(result.detail);
+  return status;
+}
+
+/// Allocates nothing where the text has had the room.
+void StructuredLemke::describe(std::string& detail) const {
+  const auto say = [&detail](const char* what, int count, const char* of_what) {
+    detail += detail.empty() ? "" : "; ";
+    detail += what;
+    detail += std::to_string(count);
+    detail += of_what;
   };
   if (attempt_ > 0) {
-    say("restarted with another d");
+    detail += detail.empty() ? "" : "; ";
+    detail += "restarted with another d";
   }
   if (first_size_ > 0) {
-    say("from a first basis of " + std::to_string(first_size_) + " rows");
+    say("from a first basis of ", first_size_, " rows");
   }
   if (double_exchanges_ > 0) {
-    say("dependent rows, " + std::to_string(double_exchanges_) + " double exchanges");
+    say("dependent rows, ", double_exchanges_, " double exchanges");
   }
-  return status;
 }
 
 /// The rows that the first basis should have.
@@ -351,7 +360,13 @@ void StructuredLemke::offer() {
   for (int i = 0; i < scaled_.size(); ++i) {
     answer_[i] = basis_->contains(i) ? scaled_.unscale_z(i, std::max(0.0, x_q_[i])) : 0.0;
   }
-  best_.offer(answer_);
+  best_.offer_answer(answer_, settings_.quick_certificate);
+}
+
+void StructuredLemke::certify(const Problem& problem, Result& result) {
+  if (!best_.take_over(result.certificate, result.w)) {
+    Solver::certify(problem, result);
+  }
 }
 
 /// rate_, the null direction that nothing blocks, as a ray.

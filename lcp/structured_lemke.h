@@ -7,6 +7,7 @@
 #include <signorini/lcp/symmetric_lcp.h>
 
 #include <random>
+#include <string>
 #include <vector>
 
 namespace signorini::lcp {
@@ -70,6 +71,7 @@ class StructuredLemke : public Solver {
   const SolverSettings& settings() const override { return settings_; }
   Status iterate(const Problem& problem, const Vector* warm_start, const Deadline& deadline,
                  Result& result) override;
+  void certify(const Problem& problem, Result& result) override;
 
  private:
   enum class Ending { kFinished, kRay, kLimit, kTime, kBreakdown };
@@ -85,6 +87,7 @@ class StructuredLemke : public Solver {
   [[nodiscard]] int null_block(double lambda) const;
   bool pivot(int row);
   void offer();
+  void describe(std::string& detail) const;
   void collect_ray(int row, Result& result, const Problem& problem);
 
   StructuredLemkeSettings settings_;

@@ -29,7 +29,6 @@ constexpr double kRowsOfAUnit = 1000.0;
 constexpr double kMostIterations = 1e4;
 // Impulses that differ by less, of their size, are the same.
 constexpr double kSame = 1e-12;
-constexpr double kLeastSeconds = 1e-9;  // a solver's limit is > 0
 
 double largest_q(const lcp::Problem& problem) {
   return problem.size() > 0 ? problem.q.cwiseAbs().maxCoeff() : 0.0;
@@ -175,15 +174,7 @@ double IslandSolver::aim(const Try& tried, const lcp::Problem& problem) const {
 /// @return whether the aim is met; the status is by what is asked
 bool IslandSolver::attempt(const lcp::Problem& problem, const Try& tried, int most, double seconds,
                            const lcp::Vector* start, lcp::Result& result) {
-  if (std::isfinite(seconds)) {  // a solver's time is in its settings
-    lcp::SolverSettings own = settings_.lcp;
-    own.tolerance = aim(tried, problem);
-    own.max_iterations = most;
-    own.time_limit = std::min(own.time_limit, std::max(seconds, kLeastSeconds));
-    lcp::make_solver(tried.solver, own)->solve(problem, result, start);
-  } else {
-    solver(tried.solver, aim(tried, problem), most).solve(problem, result, start);
-  }
+  solver(tried.solver, aim(tried, problem), most).solve_within(seconds, problem, result, start);
   if (lcp::is_solved(result.status)) {
     return true;
   }
@@ -210,7 +201,6 @@ void IslandSolver::solve_by_dial(const lcp::Problem& problem, const StepBudget& 
   lcp::Result& result = island.result;
   const lcp::Vector* start = is_warm ? &island.start : nullptr;
   const lcp::Deadline deadline(budget.seconds);
-  const auto left = [&] { return budget.seconds - deadline.elapsed_seconds(); };
   const auto merit = [](const lcp::Result& r) { return lcp::BestIterate::merit(r.certificate); };
   attempts_.clear();
   double seconds = 0.0;
@@ -218,7 +208,7 @@ void IslandSolver::solve_by_dial(const lcp::Problem& problem, const StepBudget& 
   const auto take = [&](const Try& tried, int most) {
     const bool first = attempts_.empty();
     lcp::Result& one = first ? result : another_;
-    const bool aim_met = attempt(problem, tried, most, left(), start, one);
+    const bool aim_met = attempt(problem, tried, most, deadline.left_seconds(), start, one);
     island.work += spent(tried.solver, one);
     seconds += one.statistics.solve_seconds;
     if (one.attempts.empty()) {
@@ -238,8 +228,8 @@ void IslandSolver::solve_by_dial(const lcp::Problem& problem, const StepBudget& 
     const Try& next = chain_[k];
     const double allowed =
         std::floor((budget.work - island.work) / unit_cost(next.solver, problem.size()) + 1e-9);
-    if (!(allowed >= 1.0) || !(left() > 0.0)) {
-      used_up = left() > 0.0 ? lcp::Status::kIterationLimit : lcp::Status::kTimeLimit;
+    if (!(allowed >= 1.0) || deadline.passed()) {
+      used_up = !deadline.passed() ? lcp::Status::kIterationLimit : lcp::Status::kTimeLimit;
       continue;  // a cheaper one may still fit
     }
     const int most = !std::isfinite(allowed) ? next.most

@@ -64,13 +64,15 @@ TEST(AutoSolver, TakesMiddlingFactoredProblemsFromTheInsideUnlessItHasAStart) {
 }
 
 TEST(AutoSolver, CertificateIsThatOfItsZ) {
-  for (const char* name : {"tower4", "spheres"}) {
-    const Problem problem = family(name, name[0] == 't' ? 8 : 40);
-    const Result result = solve(problem);
+  for (const auto& [name, size] : {std::pair{"tower4", 8}, {"spheres", 40}, {"spheres", 64}}) {
+    const Problem problem = family(name, size);
+    const Result result = solve(problem);  // the last by structured-lemke, which hands over its own
     Vector w;
     const Certificate again = certify(problem, result.z, &w);
     EXPECT_EQ(result.certificate.unit_free_residual, again.unit_free_residual);
     EXPECT_EQ(result.certificate.natural_residual, again.natural_residual);
+    EXPECT_EQ(result.certificate.rounding_floor, again.rounding_floor);
+    EXPECT_EQ(result.certificate.backward_error, again.backward_error);
     EXPECT_EQ(result.w, w);
   }
 }
@@ -114,6 +116,19 @@ TEST(AutoSolver, PivotsFromAGuessWhereAPairOfBodiesHasOneContact) {
   EXPECT_NE(solve(family("spheres", 48)).solver, "auto: structured-lemke");
   EXPECT_NE(solve(family("spheres", 181)).solver, "auto: structured-lemke");
   EXPECT_NE(solve(family("tower4", 16)).solver, "auto: structured-lemke");
+}
+
+TEST(AutoSolver, PivotsOnSmallPilesWhoseMassesDiffer) {
+  for (const double ratio : {1e3, 1e6}) {
+    const Problem problem = family("pyramid2d", 4, ratio);
+    ASSERT_EQ(problem.size(), 64);
+    const Result result = solve(problem);
+    EXPECT_EQ(result.status, Status::kSolved);
+    EXPECT_EQ(result.solver, "auto: dantzig");
+  }
+  EXPECT_EQ(solve(family("pyramid2d", 4)).solver, "auto: interior-point");
+  EXPECT_EQ(solve(family("pyramid2d", 5, 1e3)).solver, "auto: interior-point");
+  EXPECT_EQ(solve(family("tower4", 16, 1e3)).solver, "auto: interior-point");
 }
 
 TEST(AutoSolver, StatisticsAreSumsOverTheAttempts) {
@@ -249,6 +264,25 @@ TEST(AutoSolver, StopsAtItsTimeLimit) {
   EXPECT_TRUE(result.z.allFinite());
 }
 
+TEST(AutoSolver, EndsWhereWhatItIsAPartOfHasNoTimeLeft) {
+  const Problem problem = family("spheres", 300);
+  AutoSolver solver;
+  Result result;
+  for (const double seconds : {0.0, -1.0, 1e-9}) {
+    solver.solve_within(seconds, problem, result);
+    EXPECT_EQ(result.status, Status::kTimeLimit) << seconds;
+    EXPECT_TRUE(result.z.allFinite());
+  }
+  solver.solve_within(1e6, problem, result);
+  EXPECT_EQ(result.status, Status::kSolved);
+  solver.solve_within(std::numeric_limits<double>::infinity(), problem, result);
+  EXPECT_EQ(result.status, Status::kSolved);
+  AutoSettings settings;
+  settings.time_limit = 1e-9;
+  AutoSolver(settings).solve_within(1e6, problem, result);
+  EXPECT_EQ(result.status, Status::kTimeLimit);
+}
+
 TEST(AutoSolver, TakesNoRowsAndRefusesNaN) {
   EXPECT_EQ(solve(lcp(Matrix(0, 0), Vector(0))).status, Status::kSolved);
   EXPECT_EQ(solve(lcp(Matrix{{std::nan("")}}, Vector{{1}})).status, Status::kInvalidInput);
@@ -284,14 +318,21 @@ TEST(AutoSolver, AllocatesNothingTheSecondTimeOnSmallProblems) {
   for (double& value : G.reshaped()) value = normal(random);
   Vector v(10);
   for (double& value : v) value = normal(random);
-  const Problem problem = lcp(Matrix(G * G.transpose()), G * v);
-  AutoSolver solver;
-  Result result;
-  solver.solve(problem, result);
-  ASSERT_EQ(result.status, Status::kSolved);
-  const AllocationCount allocations;
-  solver.solve(problem, result);
-  EXPECT_EQ(allocations.count(), 0);
+  const Problem random_psd = lcp(Matrix(G * G.transpose()), G * v);
+  const Problem contacts = family("pyramid2d", 8);  // the interior point, whose start keeps sweeps
+  for (const double seconds : {1e6, std::numeric_limits<double>::infinity()}) {
+    for (const Problem& problem : {random_psd, contacts, family("spheres", 64)}) {
+      AutoSettings settings;
+      settings.time_limit = seconds;
+      AutoSolver solver(settings);
+      Result result;
+      solver.solve(problem, result);
+      ASSERT_EQ(result.status, Status::kSolved);
+      const AllocationCount allocations;
+      solver.solve(problem, result);
+      EXPECT_EQ(allocations.count(), 0) << result.solver << ", at most " << seconds << " s";
+    }
+  }
 }
 
 }  // namespace
