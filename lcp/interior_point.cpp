@@ -250,7 +250,7 @@ void InteriorPoint::Workspace::set_barriers() {
 /// x of the size of g times size_of_x, away from its bounds. Forces add up from contact to contact:
 /// their size is not known beforehand (see interior_point()).
 void InteriorPoint::Workspace::start_cold(double size_of_x) {
-  const double size_of_y = forces_add_up_ ? 0.3 : 1.0;
+  const double size_of_y = !forces_add_up_ ? 1.0 : are_alike_ ? 0.3 : 0.1;
   const Index n = problem_.size();
   const Vector& g = problem_.g();
   const double size = std::max(g.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
@@ -507,13 +507,12 @@ Status InteriorPoint::Workspace::interior_point(bool cold) {
   const int most = settings_.max_iterations >= 0 ? settings_.max_iterations
                                                  : InteriorPointSettings::kDefaultIterations;
   const double barriers = lower_.count() + upper_.count();
-  constexpr double kFirstSize = 10.0;
   constexpr double kLargestSize = 1e9;
   constexpr double kSizeGrows = 100.0;
   constexpr double kShortStep = 0.1;
   constexpr double kEarlyPolish = 1e-6;
   constexpr int kMostOfEarlyPolish = 6;
-  double size_of_x = forces_add_up_ ? kFirstSize : 1.0;
+  double size_of_x = !forces_add_up_ ? 1.0 : are_alike_ ? 10.0 : 100.0;
   double last_first_step = 0.0;
   if (cold) {
     start_cold(size_of_x);

@@ -41,8 +41,8 @@ struct InteriorPointSettings : SolverSettings {
 ///    proximal term moves them by exact Newton steps on w_i = 0.
 ///    Where contacts of bodies have no upper bounds, forces add up from contact to contact to a
 ///    size that nobody knows beforehand: the cold start is ten times as large as q asks of one
-///    contact alone, and a hundred times larger again as long as the first step all but stands
-///    still.
+///    contact alone (a hundred times where masses are not within 1 to 100), and a hundred times
+///    larger again as long as the first step all but stands still.
 /// 2. As soon as the active set that the iterate points at has settled, Newton on that set
 ///    (active_set_newton.h): usually one to three factorisations to the last digits.
 /// 3. Where the set does not settle (degenerate contacts): proximal Newton from the interior
