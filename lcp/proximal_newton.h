@@ -29,7 +29,8 @@ class ProximalNewton {
   /// the tolerance.
   /// @param proximal delta > 0 of the first step, of a unit diagonal; a tenth of it in every
   /// further one, down to least_proximal: large ones are quick from far away, small ones near the
-  /// solution
+  /// solution. Where it is larger than least_proximal x is taken for far away, and every step
+  /// starts from the set that it points at
   /// @param most_steps outer steps
   /// @param most_factorizations of all steps together
   void improve(ScaledProblem& problem, BodySpaceSystem& system, double proximal,
@@ -38,7 +39,9 @@ class ProximalNewton {
 
  private:
   [[nodiscard]] bool step(ScaledProblem& problem, BodySpaceSystem& system, double proximal,
-                          int most_factorizations, const Deadline& deadline);
+                          bool is_far, int most_factorizations, const Deadline& deadline);
+  [[nodiscard]] bool start_on_set(const ScaledProblem& problem, BodySpaceSystem& system,
+                                  double proximal);
   void dual_gradient(const ScaledProblem& problem, const WhitenedRows& rows, const Vector& u,
                      Vector& gradient);
   double line_search(const ScaledProblem& problem, const WhitenedRows& rows);

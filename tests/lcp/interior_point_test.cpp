@@ -311,9 +311,9 @@ TEST_P(FactorizationCounts, ColdWarmAndToTheLastDigits) {
 INSTANTIATE_TEST_SUITE_P(
     Families, FactorizationCounts,
     testing::Values(Counts{{"tower4", 250}, 10, 2}, Counts{{"tower8", 125}, 1, 2},
-                    Counts{{"pyramid2d", 16}, 18, 4}, Counts{{"pyramid2d", 30}, 32, 23},
-                    Counts{{"pyramid3d", 6}, 11, 2}, Counts{{"wall", 11}, 11, 4},
-                    Counts{{"spheres", 1000}, 15, 5},
+                    Counts{{"pyramid2d", 16}, 18, 4}, Counts{{"pyramid2d", 30}, 32, 13},
+                    Counts{{"pyramid3d", 6}, 11, 2}, Counts{{"pyramid3d", 9}, 24, 12},
+                    Counts{{"wall", 11}, 11, 4}, Counts{{"spheres", 1000}, 15, 5},
                     Counts{{.family = "tower4", .size = 250, .at_rest = true}, 1, 2},
                     Counts{{.family = "pyramid2d", .size = 16, .at_rest = true}, 2, 4},
                     Counts{{.family = "pyramid3d", .size = 6, .at_rest = true}, 1, 2}),
