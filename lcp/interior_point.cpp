@@ -173,7 +173,7 @@ class InteriorPoint::Workspace {
   [[nodiscard]] bool factor();
   int guess_set();
   [[nodiscard]] bool approach_by_proximal_points();
-  [[nodiscard]] bool cross_over();
+  [[nodiscard]] bool cross_over(double residual, bool has_grown);
   bool polish(int most_factorizations);
 
   InteriorPointSettings settings_;
@@ -375,7 +375,7 @@ bool InteriorPoint::Workspace::start_warm(const Vector& warm_start) {
 /// @return whether the problem is solved
 bool InteriorPoint::Workspace::approach_by_proximal_points() {
   const double near = sweeps_ == 0 ? 0.03 : 1e-4;
-  constexpr double kFirstProximal = 1e-4;
+  constexpr double kFirstProximal = 3e-4;
   constexpr int kMostSteps = 10;
   constexpr int kMostFactorizations = 36;
   if (body_space_ && are_alike_ && problem_.best_residual() <= near) {
@@ -523,7 +523,7 @@ Status InteriorPoint::Workspace::interior_point(bool cold) {
     problem_.gradient(x_, gradient_);
     const double residual = problem_.consider(x_, gradient_);
     // Beyond this the polish is the better way to the last digits.
-    if (residual <= std::max(settings_.tolerance, 1e-10) || cross_over()) {
+    if (residual <= std::max(settings_.tolerance, 1e-10) || cross_over(residual, may_grow)) {
       return Status::kStalled;  // the certificate will say what it is
     }
     if (residual <= kEarlyPolish && !polished_early_) {
@@ -589,18 +589,24 @@ int InteriorPoint::Workspace::guess_set() {
   return changed;
 }
 
-/// Leaves the interior for the active set that the iterate points at, when that has settled. After
-/// a failure it waits, each time longer. @return whether that solves the problem
-bool InteriorPoint::Workspace::cross_over() {
-  constexpr double kSettled = 0.005;  // of the rows may still have changed
+/// Leaves the interior for the active set that the iterate points at, when that has settled: which
+/// means nothing while the iterate is far from everything, unless it had to grow, as in towers
+/// whose contacts all press. After a failure it waits, each time longer. @return whether that
+/// solves the problem
+bool InteriorPoint::Workspace::cross_over(double residual, bool has_grown) {
+  constexpr double kFar = 0.3;
+  constexpr double kSettled = 0.005;  // of the rows may still have changed, and
+  constexpr double kMostChanged = 3.0;
   // Factorisations that failures may have cost: some, and a share of the iterations.
   constexpr double kFirstWaste = 2.0;
   constexpr double kWasteShare = 0.3;
   constexpr ActiveSetNewton::Limits kLimits = {.factorizations = 8, .wrong_share = 0.015};
   const int changed = guess_set();
-  const bool settled = changed <= kSettled * static_cast<double>(guess_.size());
+  const bool settled =
+      changed <= std::min(kSettled * static_cast<double>(guess_.size()), kMostChanged);
   const bool affordable = wasted_ <= kFirstWaste + kWasteShare * iterations_;
-  if (!settled || !affordable || iterations_ < next_crossing_ || guess_ == tried_) {
+  const bool is_far = residual > kFar && !(has_grown && iterations_ > 0);
+  if (is_far || !settled || !affordable || iterations_ < next_crossing_ || guess_ == tried_) {
     return false;
   }
   const int before = problem_.system().factorizations();

@@ -154,7 +154,7 @@ bool ProximalNewton::step(ScaledProblem& problem, BodySpaceSystem& system, doubl
 void ProximalNewton::improve(ScaledProblem& problem, BodySpaceSystem& system, double proximal,
                              double least_proximal, int most_steps, int most_factorizations,
                              double tolerance, const Deadline& deadline) {
-  constexpr double kFalls = 0.1;
+  constexpr double kFalls = 0.03;
   const bool is_far = proximal > least_proximal;
   x_ = problem.best();
   double before = problem.best_residual();

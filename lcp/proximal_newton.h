@@ -27,7 +27,7 @@ class ProximalNewton {
  public:
   /// Outer steps from the problem's best x until the residual no longer halves or is a tenth of
   /// the tolerance.
-  /// @param proximal delta > 0 of the first step, of a unit diagonal; a tenth of it in every
+  /// @param proximal delta > 0 of the first step, of a unit diagonal; 3 % of it in every
   /// further one, down to least_proximal: large ones are quick from far away, small ones near the
   /// solution. Where it is larger than least_proximal x is taken for far away, and every step
   /// starts from the set that it points at
