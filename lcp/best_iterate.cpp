@@ -38,7 +38,8 @@ const Certificate& BestIterate::certificate() {
 
 /// What is solved needs no comparison with a z = 0 that nobody asked about.
 bool BestIterate::keep_if_better(const VectorRef& z, const Certificate& certificate) {
-  const bool is_first = !is_certified_ && is_solved(judge(certificate, tolerance_, Status::kNotRun));
+  const bool is_first =
+      !is_certified_ && is_solved(judge(certificate, tolerance_, Status::kNotRun));
   if (!z.allFinite() || !(is_first || merit(certificate) < merit(this->certificate()))) {
     return false;
   }

@@ -114,7 +114,20 @@ void Certifier::visit_entries(const Problem& problem, std::vector<Number>& absol
 /// size_ without q: in doubles, whose rounding is nothing in a floor, and in long doubles where one
 /// of the sums leaves their range.
 void Certifier::find_sizes(const Problem& problem) {
-  visit_entries(problem, absolute_z_, absolute_w_);
+  const auto* factored = std::get_if<FactoredMatrix>(&problem.M);
+  absolute_z_.resize(problem.size());
+  absolute_w_.resize(problem.size());
+  std::ranges::transform(z_, absolute_z_.begin(),
+                         [](long double z) { return static_cast<double>(std::abs(z)); });
+  if (factored != nullptr &&
+      absolute_product_.compute(*factored, absolute_z_, absolute_w_, scale_)) {
+    for (std::size_t c = 0; c < problem.cones.size(); ++c) {
+      const FrictionCone& cone = problem.cones[c];
+      cone_blocks_[c] = diagonal_block(problem.M, cone.normal_row, cone.dimension, block_room_);
+    }
+  } else {
+    visit_entries(problem, absolute_z_, absolute_w_);
+  }
   const bool in_range = std::all_of(absolute_w_.begin(), absolute_w_.end(), [](double sum) {
     return sum == 0.0 || (sum > kLeastSum && std::isfinite(sum));
   });

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <signorini/lcp/absolute_product.h>
 #include <signorini/lcp/interval.h>
 #include <signorini/lcp/islands.h>
 #include <signorini/lcp/problem.h>
@@ -176,13 +177,14 @@ class Certifier {
   std::vector<int> cone_of_row_;                 // -1: none
   std::vector<Bounds> bounds_;
   FactoredMatrix::VisitWorkspace visit_;
+  AbsoluteProduct absolute_product_;
   std::vector<Total> totals_;      // of the problem, or of its islands
   std::vector<Interval> product_;  // M z without rounding, where q = 0
   std::vector<int> limit_of_row_;  // in problem.limits, -1: none; where q = 0
 };
 
 /// Recomputes the certificate of z. Cost: one product with M in long double, one with |M| (of a
-/// factored M without forming it, FactoredMatrix::visit_lower()).
+/// factored M without forming it).
 /// @param problem must have passed check_shapes(), with finite values; numbers from 1e-150 to 1e150
 /// neither overflow nor underflow on the way (long double has the range), residuals beyond double
 /// are +infinity

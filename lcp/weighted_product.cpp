@@ -21,8 +21,8 @@ template <typename V>
 constexpr int kLanes = static_cast<int>(sizeof(V) / sizeof(double));
 
 template <typename V, int kColumns>
-SIGNORINI_INLINE void multiply_columns(double* block, const double* L, const double* R, int width,
-                                       const double* d, int rows) {
+SIGNORINI_INLINE void multiply_columns(double* block, const double* L, const double* R, int width_L,
+                                       int width_R, const double* d, int rows) {
   constexpr int kVectors = kSize / kLanes<V>;
   V sum[kColumns][kVectors];
 #pragma GCC unroll 8
@@ -32,7 +32,7 @@ SIGNORINI_INLINE void multiply_columns(double* block, const double* L, const dou
       sum[c][i] = V{};
     }
   }
-  for (int row = 0; row < rows; ++row, L += width, R += width) {
+  for (int row = 0; row < rows; ++row, L += width_L, R += width_R) {
     V weighted[kVectors];
 #pragma GCC unroll 4
     for (int i = 0; i < kVectors; ++i) {
@@ -58,34 +58,34 @@ SIGNORINI_INLINE void multiply_columns(double* block, const double* L, const dou
 
 /// As many columns at once as the registers hold.
 template <typename V>
-SIGNORINI_INLINE void multiply(double* block, const double* L, const double* R, int width,
-                               const double* d, int rows, int columns) {
+SIGNORINI_INLINE void multiply(double* block, const double* L, const double* R, int width_L,
+                               int width_R, const double* d, int rows, int columns) {
   constexpr int kMost = kLanes<V> == 8 ? 6 : kLanes<V>;
   int c = 0;
   for (; c + kMost <= columns; c += kMost) {
-    multiply_columns<V, kMost>(block + c * kSize, L, R + c, width, d, rows);
+    multiply_columns<V, kMost>(block + c * kSize, L, R + c, width_L, width_R, d, rows);
   }
   if constexpr (kMost > 4) {
     if (c + 4 <= columns) {
-      multiply_columns<V, 4>(block + c * kSize, L, R + c, width, d, rows);
+      multiply_columns<V, 4>(block + c * kSize, L, R + c, width_L, width_R, d, rows);
       c += 4;
     }
   }
   if constexpr (kMost > 2) {
     if (c + 2 <= columns) {
-      multiply_columns<V, 2>(block + c * kSize, L, R + c, width, d, rows);
+      multiply_columns<V, 2>(block + c * kSize, L, R + c, width_L, width_R, d, rows);
       c += 2;
     }
   }
   if (c < columns) {
-    multiply_columns<V, 1>(block + c * kSize, L, R + c, width, d, rows);
+    multiply_columns<V, 1>(block + c * kSize, L, R + c, width_L, width_R, d, rows);
   }
 }
 
-#define SIGNORINI_PRODUCT(set, attribute, V)                                                \
-  attribute void multiply_##set(double* block, const double* L, const double* R, int width, \
-                                const double* d, int rows, int columns) {                   \
-    multiply<V>(block, L, R, width, d, rows, columns);                                      \
+#define SIGNORINI_PRODUCT(set, attribute, V)                                                  \
+  attribute void multiply_##set(double* block, const double* L, const double* R, int width_L, \
+                                int width_R, const double* d, int rows, int columns) {        \
+    multiply<V>(block, L, R, width_L, width_R, d, rows, columns);                             \
   }
 
 SIGNORINI_PRODUCT(baseline, , Two)

@@ -14,11 +14,11 @@ struct WeightedProduct {
   static constexpr int kSize = 8;
 
   std::string_view name;  ///< "avx512", "avx2" or "baseline"
-  /// block (kSize x columns, column-major). L and R: `rows` rows of numbers that are `width` apart.
-  /// All kSize numbers of L's rows are read, the last row's too; what they are of is the caller's
-  /// to know.
-  void (*multiply)(double* block, const double* L, const double* R, int width, const double* d,
-                   int rows, int columns);
+  /// block (kSize x columns, column-major). L and R: `rows` rows of numbers that are width_L and
+  /// width_R apart. All kSize numbers of L's rows are read, the last row's too; what they are of is
+  /// the caller's to know.
+  void (*multiply)(double* block, const double* L, const double* R, int width_L, int width_R,
+                   const double* d, int rows, int columns);
 };
 
 /// The sets this machine can run, the fastest first.

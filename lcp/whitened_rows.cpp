@@ -103,7 +103,7 @@ inline void add_outer_by_kernel(const Rows& rows, const double* d, int size, int
   static const WeightedProduct& product = weighted_products().front();
   constexpr int kLd = WeightedProduct::kSize;
   double block[kLd * kLd];
-  product.multiply(block, rows.one, rows.other, rows.width, d, rows.count, columns);
+  product.multiply(block, rows.one, rows.other, rows.width, rows.width, d, rows.count, columns);
   const auto add_block = [&](int count) {  // unrolled where it is known
     for (int c = 0; c < columns; ++c) {
       double* column = out + starts[c];

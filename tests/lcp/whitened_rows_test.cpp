@@ -155,8 +155,8 @@ TEST(WeightedProduct, IsThatToTheBitOfEveryInstructionSet) {
       }
       for (const WeightedProduct& set : weighted_products()) {
         Matrix block = Matrix::Constant(kSize, columns + 1, 7.0);
-        set.multiply(block.data(), left.data() + 2, right.data() + 1, kWidth, d.data(), rows,
-                     columns);
+        set.multiply(block.data(), left.data() + 2, right.data() + 1, kWidth, kWidth, d.data(),
+                     rows, columns);
         EXPECT_EQ(block.leftCols(columns), wanted) << set.name << ", " << rows << ", " << columns;
         EXPECT_EQ(block.col(columns), Vector::Constant(kSize, 7.0));
       }
