@@ -122,7 +122,7 @@ void Solver::solve_within(double seconds, const Problem& problem, Result& result
       result.detail += result.detail.empty() ? "" : "; ";
       result.detail += "the iterate was not finite: z = 0 instead";
     }
-    certify(problem, result);
+    n == 0 ? Solver::certify(problem, result) : certify(problem, result);  // iterate() has not run
     judge_result(problem, is_solved(ending) ? Status::kNumericalBreakdown : ending, result);
     if (settings().certify_islands) {
       certify_islands(problem, result);

@@ -288,6 +288,28 @@ TEST(AutoSolver, TakesNoRowsAndRefusesNaN) {
   EXPECT_EQ(solve(lcp(Matrix{{std::nan("")}}, Vector{{1}})).status, Status::kInvalidInput);
 }
 
+/// What was solved before must not show in the answer to no rows, which runs no iteration.
+TEST(EverySolver, AnswersNoRowsAfterAProblem) {
+  const Problem before = family("tower4", 3);
+  Problem none;
+  none.M = FactoredMatrix();
+  none.q = Vector(0);
+  for (const std::string_view name : solver_names()) {
+    const std::unique_ptr<Solver> solver = make_solver(name);
+    Result result;
+    if (solver->refuses(before).empty()) {
+      solver->solve(before, result);
+    }
+    ASSERT_EQ(solver->refuses(none), "") << name;
+    solver->solve(none, result);
+    EXPECT_EQ(result.status, Status::kSolved) << name;
+    EXPECT_EQ(result.z.size(), 0) << name;
+    EXPECT_EQ(result.w.size(), 0) << name;
+    EXPECT_EQ(result.certificate.worst_row, -1) << name;
+    EXPECT_EQ(result.attempts.size(), 0U) << name;
+  }
+}
+
 // Murty, Linear Complementarity (1988), section 6.2, and Fathi's symmetric form: 2^n - 1 pivots of
 // the textbook methods.
 TEST(AutoSolver, IsNotExponentialOnMurtysAndFathisExamples) {
