@@ -224,7 +224,7 @@ Dantzig::Ending Dantzig::drive(int row, const Deadline& deadline) {
     if (pivots_ + flips_ >= limit) {
       return Ending::kLimit;
     }
-    if (deadline.passed()) {
+    if (deadline.passed_at(pivots_ + flips_)) {
       return Ending::kTime;
     }
     basis_->column(row, rate_.data());

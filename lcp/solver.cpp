@@ -47,7 +47,7 @@ double Deadline::elapsed_seconds() const {
 }
 
 bool Deadline::passed() const {
-  return elapsed_seconds() >= seconds_;
+  return seconds_ < std::numeric_limits<double>::infinity() && elapsed_seconds() >= seconds_;
 }
 
 void Solver::certify(const Problem& problem, Result& result) {

@@ -43,6 +43,8 @@ class Deadline {
  public:
   explicit Deadline(double seconds);
   [[nodiscard]] bool passed() const;
+  /// passed() of steps that cost no more than a look at the clock does: at every eighth.
+  [[nodiscard]] bool passed_at(int step) const { return step % 8 == 0 && passed(); }
   [[nodiscard]] double elapsed_seconds() const;
   /// Below 0 once it has passed.
   [[nodiscard]] double left_seconds() const { return seconds_ - elapsed_seconds(); }

@@ -199,7 +199,7 @@ StructuredLemke::Ending StructuredLemke::follow(const Deadline& deadline) {
     if (pivots_ >= limit) {
       return Ending::kLimit;
     }
-    if (deadline.passed()) {
+    if (deadline.passed_at(pivots_)) {
       return Ending::kTime;
     }
     lambda = std::min(lambda, at);
