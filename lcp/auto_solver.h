@@ -22,7 +22,7 @@ struct AutoSettings : SolverSettings {
 
 /// Chooses solvers for the problem and tries them in turn until one solves it.
 ///
-/// The choice depends on counts and on the data alone, never on a clock (unless time_limit is set,
+/// The choice depends on counts and on the data alone, never on a clock (unless time is limited,
 /// which each solver then gets what is left of): the same input gives the same bits.
 ///
 /// | problem | tried in this order |

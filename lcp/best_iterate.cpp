@@ -39,7 +39,7 @@ const Certificate& BestIterate::certificate() {
 /// What is solved needs no comparison with a z = 0 that nobody asked about.
 bool BestIterate::keep_if_better(const VectorRef& z, const Certificate& certificate) {
   const bool is_first =
-      !is_certified_ && is_solved(judge(certificate, tolerance_, Status::kNotRun));
+      !is_certified_ && judge(certificate, tolerance_, Status::kNotRun) == Status::kSolved;
   if (!z.allFinite() || !(is_first || merit(certificate) < merit(this->certificate()))) {
     return false;
   }
@@ -57,6 +57,7 @@ Certificate BestIterate::offer(const VectorRef& z) {
 }
 
 Certificate BestIterate::offer_answer(const VectorRef& z, bool quickly) {
+  has_started_ = false;  // certifying quickly leaves scales of its own
   const Certificate certificate =
       quickly ? certifier_.certify_quickly(*problem_, z, tolerance_, &answer_w_)
               : certifier_.certify(*problem_, z, &answer_w_);

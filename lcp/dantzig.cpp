@@ -53,7 +53,7 @@ std::string Dantzig::refuses(const Problem& problem) const {
 
 Status Dantzig::iterate(const Problem& problem, const Vector* warm_start, const Deadline& deadline,
                         Result& result) {
-  pivots_ = flips_ = refinements_ = dependent_moves_ = rounds_ = 0;
+  pivots_ = flips_ = refinements_ = dependent_moves_ = rounds_ = looks_ = 0;
   ray_row_ = -1;
   result.z.setZero();
   if (!scaled_.assign(problem)) {
@@ -224,7 +224,7 @@ Dantzig::Ending Dantzig::drive(int row, const Deadline& deadline) {
     if (pivots_ + flips_ >= limit) {
       return Ending::kLimit;
     }
-    if (deadline.passed_at(pivots_ + flips_)) {
+    if (deadline.passed_at(looks_++, scaled_.size())) {
       return Ending::kTime;
     }
     basis_->column(row, rate_.data());

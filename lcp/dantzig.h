@@ -133,6 +133,7 @@ class Dantzig : public Solver {
   int refinements_ = 0;
   int dependent_moves_ = 0;
   int rounds_ = 0;
+  int looks_ = 0;  // at the clock, if it was asked
   int ray_row_ = -1;
 };
 

@@ -94,7 +94,7 @@ class FactoredMatrix {
   std::vector<double> compliance_;
 };
 
-/// Most blocks are bodies in space or in the plane.
+/// Most blocks are bodies in space.
 inline double FactoredMatrix::dot(int size, const double* x, const double* y) {
   if (size == 6) {  // two halves at once
     const double low = x[0] * y[0] + x[1] * y[1] + x[2] * y[2];

@@ -173,6 +173,7 @@ class InteriorPoint::Workspace {
   [[nodiscard]] bool factor();
   int guess_set();
   [[nodiscard]] bool approach_by_proximal_points();
+  [[nodiscard]] bool try_set();
   [[nodiscard]] bool cross_over(double residual, bool has_grown);
   bool polish(int most_factorizations);
 
@@ -231,8 +232,10 @@ Status InteriorPoint::Workspace::run(const Problem& problem, const Vector* warm_
     return Status::kStalled;
   }
   const Status ending = interior_point(warm_start == nullptr);
-  if (problem_.best_residual() > settings_.tolerance) {
-    polish(kMostOfLastPolish);
+  if (problem_.best_residual() > settings_.tolerance && !polish(kMostOfLastPolish) &&
+      !guess_.empty() && guess_ != tried_ && ending != Status::kIterationLimit &&
+      ending != Status::kTimeLimit) {
+    (void)try_set();  // the last that the iterate pointed at, however far it was
   }
   return ending;
 }
@@ -589,9 +592,20 @@ int InteriorPoint::Workspace::guess_set() {
   return changed;
 }
 
+/// @return whether the active set of the last guess solves the problem
+bool InteriorPoint::Workspace::try_set() {
+  constexpr ActiveSetNewton::Limits kLimits = {.factorizations = 8, .wrong_share = 0.015};
+  tried_ = guess_;
+  trial_ = x_;
+  std::vector<RowState>& state = last_guess_;  // to change; the next guess is compared with guess_
+  state = guess_;
+  return active_set_.improve(problem_, trial_, state, kLimits, settings_.tolerance) <=
+         settings_.tolerance;
+}
+
 /// Leaves the interior for the active set that the iterate points at, when that has settled: which
-/// means nothing while the iterate is far from everything, unless it had to grow, as in towers
-/// whose contacts all press. After a failure it waits, each time longer. @return whether that
+/// means nothing while the iterate is far from everything, unless it has just had to grow, as in
+/// towers whose contacts all press. After a failure it waits, each time longer. @return whether that
 /// solves the problem
 bool InteriorPoint::Workspace::cross_over(double residual, bool has_grown) {
   constexpr double kFar = 0.3;
@@ -600,22 +614,16 @@ bool InteriorPoint::Workspace::cross_over(double residual, bool has_grown) {
   // Factorisations that failures may have cost: some, and a share of the iterations.
   constexpr double kFirstWaste = 2.0;
   constexpr double kWasteShare = 0.3;
-  constexpr ActiveSetNewton::Limits kLimits = {.factorizations = 8, .wrong_share = 0.015};
   const int changed = guess_set();
   const bool settled =
       changed <= std::min(kSettled * static_cast<double>(guess_.size()), kMostChanged);
   const bool affordable = wasted_ <= kFirstWaste + kWasteShare * iterations_;
-  const bool is_far = residual > kFar && !(has_grown && iterations_ > 0);
+  const bool is_far = forces_add_up_ && residual > kFar && !(has_grown && iterations_ > 0);
   if (is_far || !settled || !affordable || iterations_ < next_crossing_ || guess_ == tried_) {
     return false;
   }
   const int before = problem_.system().factorizations();
-  tried_ = guess_;
-  trial_ = x_;
-  std::vector<RowState>& state = last_guess_;  // to change; the next guess is compared with guess_
-  state = guess_;
-  if (active_set_.improve(problem_, trial_, state, kLimits, settings_.tolerance) <=
-      settings_.tolerance) {
+  if (try_set()) {
     return true;
   }
   wasted_ += problem_.system().factorizations() - before;

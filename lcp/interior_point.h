@@ -43,8 +43,10 @@ struct InteriorPointSettings : SolverSettings {
 ///    size that nobody knows beforehand: the cold start is ten times as large as q asks of one
 ///    contact alone (a hundred times where masses are not within 1 to 100), and a hundred times
 ///    larger again as long as the first step all but stands still.
-/// 2. As soon as the active set that the iterate points at has settled, Newton on that set
-///    (active_set_newton.h): usually one to three factorisations to the last digits.
+/// 2. As soon as the iterate is no longer far away (a residual of 0.3, or a start that just had to
+///    grow) and the active set that it points at has settled (0.5 % of the rows and three at most
+///    changed), Newton on that set (active_set_newton.h): usually one to three factorisations to
+///    the last digits.
 /// 3. Where the set does not settle (degenerate contacts): proximal Newton from the interior
 ///    (proximal_newton.h; factored M only).
 ///

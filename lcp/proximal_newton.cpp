@@ -79,8 +79,9 @@ bool ProximalNewton::start_on_set(const ScaledProblem& problem, BodySpaceSystem&
   for (Index i = 0; i < n; ++i) {
     const double target = point_[i] - base_slack_[i];
     const bool is_between = target > problem.lower()[i] && target < problem.upper()[i];
+    const double clamped = std::clamp(target, problem.lower()[i], problem.upper()[i]);
     e_[i] = is_between ? 0.0 : kInfinity;
-    change_[i] = is_between ? -base_slack_[i] / weight_[i] : 0.0;
+    change_[i] = is_between ? -base_slack_[i] / weight_[i] : clamped - point_[i];
   }
   if (!system.factor(e_, proximal)) {
     return false;
@@ -158,7 +159,8 @@ void ProximalNewton::improve(ScaledProblem& problem, BodySpaceSystem& system, do
   const bool is_far = proximal > least_proximal;
   x_ = problem.best();
   double before = problem.best_residual();
-  for (int k = 0; k < most_steps && !deadline.passed(); ++k) {
+  for (int k = 0;
+       k < most_steps && system.factorizations() < most_factorizations && !deadline.passed(); ++k) {
     weight_ = system.rows().compliance().array() + proximal;
     if (!step(problem, system, proximal, is_far, most_factorizations, deadline)) {
       return;

@@ -77,10 +77,15 @@ void Solver::certify_islands(const Problem& problem, Result& result) {
   result.island_of_row = islands_.island;
 }
 
-void Solver::record(const Problem& problem, const Vector* warm_start, Result& result) const {
+/// The time limit on record is the one that held.
+void Solver::record(const Problem& problem, double seconds, const Vector* warm_start,
+                    Result& result) const {
+  SolverSettings told = settings();
+  told.time_limit =
+      std::min(told.time_limit, std::max(seconds, std::numeric_limits<double>::min()));
   std::string said;
   try {
-    said = settings().recorder->record({name(), settings(), problem, warm_start, result});
+    said = settings().recorder->record({name(), told, problem, warm_start, result});
   } catch (const std::exception& error) {
     said = std::string("not recorded: ") + error.what();
   }
@@ -134,7 +139,7 @@ void Solver::solve_within(double seconds, const Problem& problem, Result& result
   }
   result.statistics.solve_seconds = deadline.elapsed_seconds();
   if (settings().recorder != nullptr) {
-    record(problem, warm_start, result);
+    record(problem, seconds, warm_start, result);
   }
 }
 

@@ -43,8 +43,12 @@ class Deadline {
  public:
   explicit Deadline(double seconds);
   [[nodiscard]] bool passed() const;
-  /// passed() of steps that cost no more than a look at the clock does: at every eighth.
-  [[nodiscard]] bool passed_at(int step) const { return step % 8 == 0 && passed(); }
+  /// passed() of steps that cost little more than a look at the clock does: at every eighth, where
+  /// a problem has few rows. @param step counts every look
+  [[nodiscard]] bool passed_at(int step, int rows) const {
+    constexpr int kFewRows = 100;
+    return (rows > kFewRows || step % 8 == 0) && passed();
+  }
   [[nodiscard]] double elapsed_seconds() const;
   /// Below 0 once it has passed.
   [[nodiscard]] double left_seconds() const { return seconds_ - elapsed_seconds(); }
@@ -96,7 +100,8 @@ class Solver {
 
  private:
   void judge_result(const Problem& problem, Status ending, Result& result) const;
-  void record(const Problem& problem, const Vector* warm_start, Result& result) const;
+  void record(const Problem& problem, double seconds, const Vector* warm_start,
+              Result& result) const;
   void certify_islands(const Problem& problem, Result& result);
 
   Certifier certifier_;

@@ -187,6 +187,7 @@ bool StructuredLemke::start(int attempt) {
 StructuredLemke::Ending StructuredLemke::follow(const Deadline& deadline) {
   const int limit =
       settings_.max_iterations >= 0 ? settings_.max_iterations : 1000 + 50 * scaled_.size();
+  int look = 0;  // at the clock, if it is asked
   double lambda = kInfinity;
   const double d_size = std::abs(*std::max_element(
       d_.begin(), d_.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
@@ -199,7 +200,7 @@ StructuredLemke::Ending StructuredLemke::follow(const Deadline& deadline) {
     if (pivots_ >= limit) {
       return Ending::kLimit;
     }
-    if (deadline.passed_at(pivots_)) {
+    if (deadline.passed_at(look++, scaled_.size())) {
       return Ending::kTime;
     }
     lambda = std::min(lambda, at);

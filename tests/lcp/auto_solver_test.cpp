@@ -66,7 +66,8 @@ TEST(AutoSolver, TakesMiddlingFactoredProblemsFromTheInsideUnlessItHasAStart) {
 TEST(AutoSolver, CertificateIsThatOfItsZ) {
   for (const auto& [name, size] : {std::pair{"tower4", 8}, {"spheres", 40}, {"spheres", 64}}) {
     const Problem problem = family(name, size);
-    const Result result = solve(problem);  // the last by structured-lemke, which hands over its own
+    const Result result = solve(problem);  // the last by one that hands over its own
+    EXPECT_EQ(result.solver == "auto: structured-lemke", size == 64);
     Vector w;
     const Certificate again = certify(problem, result.z, &w);
     EXPECT_EQ(result.certificate.unit_free_residual, again.unit_free_residual);
@@ -74,6 +75,13 @@ TEST(AutoSolver, CertificateIsThatOfItsZ) {
     EXPECT_EQ(result.certificate.rounding_floor, again.rounding_floor);
     EXPECT_EQ(result.certificate.backward_error, again.backward_error);
     EXPECT_EQ(result.w, w);
+    const Result quick = solve(problem, {{.tolerance = 1e-8, .quick_certificate = true}});
+    const Certificate bound = Certifier().certify_quickly(problem, quick.z, 1e-8, &w);
+    EXPECT_EQ(quick.status, Status::kSolved);
+    EXPECT_EQ(quick.certificate.unit_free_residual, bound.unit_free_residual);
+    EXPECT_EQ(quick.certificate.rounding_floor, bound.rounding_floor);
+    EXPECT_TRUE(std::isnan(quick.certificate.backward_error));
+    EXPECT_EQ(quick.w, w);
   }
 }
 
@@ -281,6 +289,29 @@ TEST(AutoSolver, EndsWhereWhatItIsAPartOfHasNoTimeLeft) {
   settings.time_limit = 1e-9;
   AutoSolver(settings).solve_within(1e6, problem, result);
   EXPECT_EQ(result.status, Status::kTimeLimit);
+}
+
+/// What a solve as a part of another is told, so that it can be replayed.
+TEST(AutoSolver, RecordsTheTimeThatItHad) {
+  struct : SolveRecorder {
+    std::string record(const SolveRecord& solve) override {
+      time_limit = solve.settings.time_limit;
+      return {};
+    }
+    double time_limit = 0.0;
+  } recorder;
+  AutoSettings settings;
+  settings.recorder = &recorder;
+  settings.time_limit = 50.0;
+  AutoSolver solver(settings);
+  Result result;
+  for (const auto& [seconds, recorded] : {std::pair{1e6, 50.0}, {20.0, 20.0}}) {
+    solver.solve_within(seconds, family("tower4", 3), result);
+    EXPECT_EQ(recorder.time_limit, recorded);
+  }
+  solver.solve_within(-1.0, family("tower4", 3), result);
+  EXPECT_GT(recorder.time_limit, 0.0);
+  EXPECT_LT(recorder.time_limit, 1e-300);
 }
 
 TEST(AutoSolver, TakesNoRowsAndRefusesNaN) {
