@@ -605,8 +605,8 @@ bool InteriorPoint::Workspace::try_set() {
 
 /// Leaves the interior for the active set that the iterate points at, when that has settled: which
 /// means nothing while the iterate is far from everything, unless it has just had to grow, as in
-/// towers whose contacts all press. After a failure it waits, each time longer. @return whether that
-/// solves the problem
+/// towers whose contacts all press. After a failure it waits, each time longer. @return whether
+/// that solves the problem
 bool InteriorPoint::Workspace::cross_over(double residual, bool has_grown) {
   constexpr double kFar = 0.3;
   constexpr double kSettled = 0.005;  // of the rows may still have changed, and
