@@ -172,7 +172,7 @@ void Certifier::multiply_by_matrix(const Problem& problem) {
 }
 
 void Certifier::find_bounds(const Problem& problem) {
-  bounds_.assign(problem.size(), {0.0L, kInfinity});
+  bounds_.assign(problem.size(), {0.0L, kInfinity, 0.0L});
   for (Index i = 0; i < problem.size(); ++i) {
     if (problem.lower.size() > 0) {
       bounds_[i].lower = problem.lower[i];
@@ -182,9 +182,10 @@ void Certifier::find_bounds(const Problem& problem) {
     }
   }
   for (const CoupledLimit& limit : problem.limits) {
-    const long double most =
-        static_cast<long double>(limit.coefficient) * std::max(z_[limit.normal_row], 0.0L);
-    bounds_[limit.row] = {-most, most};
+    const long double coefficient = limit.coefficient;
+    const long double normal = std::max(z_[limit.normal_row], 0.0L);
+    const long double most = coefficient * normal;
+    bounds_[limit.row] = {-most, most, std::abs(std::fma(coefficient, normal, -most))};
   }
 }
 
@@ -215,11 +216,15 @@ inline void Certifier::Total::add_group(int row, const Measure& measure) {
 inline Certifier::Measure Certifier::measure_row(Index i) const {
   const long double z = z_[i];
   const long double w = w_[i];
-  const auto [lower, upper] = bounds_[i];
+  const auto [lower, upper, lost] = bounds_[i];
   // s r(s): 0 exactly where the row is solved. Arithmetic with infinities is slow in long double.
   const auto scaled_step = [&](long double s) {
     const long double from_upper = upper < kInfinity ? std::max(w, s * (z - upper)) : w;
-    return std::abs(lower > -kInfinity ? std::min(from_upper, s * (z - lower)) : from_upper);
+    const long double step =
+        std::abs(lower > -kInfinity ? std::min(from_upper, s * (z - lower)) : from_upper);
+    const bool may_be_bound =
+        lost > 0.0L && (s * (z - lower - lost) <= w || s * (z - upper + lost) >= w);
+    return may_be_bound ? step + s * lost : step;
   };
   const long double d = scale_[i];
   Measure row;

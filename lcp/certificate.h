@@ -109,6 +109,7 @@ class Certifier {
   struct Bounds {
     long double lower;
     long double upper;
+    long double lost;  // what rounding cost them: mu z_n of a coupled limit has 106 bits
   };
   /// What a row, or the normal row of a cone for all its rows, adds to a certificate.
   struct Measure {

@@ -104,6 +104,15 @@ TEST(Certificate, CouplesAFrictionRowToTheNormalOfTheGivenZ) {
   problem.limits = {{.row = 1, .normal_row = 0, .coefficient = 0.5}};
   EXPECT_EQ(certify(problem, vector({2, 1})).unit_free_residual, 0.0);
   EXPECT_DOUBLE_EQ(certify(problem, vector({2, 2})).unit_free_residual, 0.2);
+  // At a limit whose product has more bits than long double: beside z = 1e25 what that lost is no
+  // 0.
+  problem.limits[0].coefficient = 0.1;
+  const double at_limit = -static_cast<double>(0.1L * 1e25L);
+  problem.M = Matrix(Matrix{{1e-30, 0.0}, {0.0, 1e-30}});
+  problem.q = vector({0.0, 1.0});
+  EXPECT_GT(certify(problem, vector({1e25, at_limit})).natural_residual, 1e-3);
+  problem = lcp(Matrix::Identity(2, 2), vector({-2, -5}));
+  problem.limits = {{.row = 1, .normal_row = 0, .coefficient = 0.5}};
   // A negative normal force carries no friction: both rows are wrong, z_n by 1 + 2.
   EXPECT_DOUBLE_EQ(certify(problem, vector({-1, 0})).unit_free_residual, 0.6);
 }
