@@ -68,9 +68,8 @@ bool has_single_contacts(const FactoredMatrix& A) {
 /// More pairs than bodies, which is a wall or a pyramid and not a tower, and some bodies far
 /// heavier than others: which contacts press is then not seen from the first steps.
 bool has_cycles_and_heavy_bodies(const FactoredMatrix& A) {
-  constexpr double kAlike = 100.0;
   const int pairs = A.rows() - repeated_pairs(A);
-  return pairs > A.mass.block_count() && mass_ratio(A.mass) > kAlike;
+  return pairs > A.mass.block_count() && !are_masses_alike(A.mass);
 }
 
 }  // namespace

@@ -502,7 +502,10 @@ Certifier::Measure Certifier::bound_group(const Problem& problem, int first, int
   long double w_tilde = w[0];
   bool is_inside = false;
   if (cone < 0) {
-    is_inside = z[0] >= bounds_[first].lower && z[0] <= bounds_[first].upper;
+    const auto& [lower, upper, lost_of_bounds] = bounds_[first];
+    is_inside = z[0] >= lower && z[0] <= upper &&
+                (lost_of_bounds == 0.0L ||
+                 (z[0] - lower >= lost_of_bounds && upper - z[0] >= lost_of_bounds));
   } else {
     const long double mu = problem.cones[cone].coefficient;
     const long double limit = (1.0L - kFarInside) * mu * z[0];  // nearer: measured

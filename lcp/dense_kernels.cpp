@@ -1,41 +1,17 @@
 #include <signorini/lcp/dense_kernels.h>
+#include <signorini/lcp/vector_lanes.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
 #include <utility>
-
-// One source for every instruction set: the loops are templates over a vector type, inlined into
-// functions that are compiled for the set (gcc and clang vector extensions).
-#define SIGNORINI_INLINE [[gnu::always_inline]] inline
-#pragma GCC diagnostic ignored "-Wpsabi"  // vectors are returned by inlined functions only
 
 namespace signorini::lcp {
 namespace {
 
+using namespace vector_lanes;
 using Stride = std::ptrdiff_t;
-
-using Two = double __attribute__((vector_size(16)));
-using Four = double __attribute__((vector_size(32)));
-using Eight = double __attribute__((vector_size(64)));
-
-template <typename V>
-constexpr int kLanes = static_cast<int>(sizeof(V) / sizeof(double));
-
-// Data are aligned like a double. (An alignment in V's own attributes would not reach a template.)
-template <typename V>
-SIGNORINI_INLINE V load(const double* from) {
-  V value;
-  std::memcpy(&value, from, sizeof value);
-  return value;
-}
-
-template <typename V>
-SIGNORINI_INLINE void store(const V& value, double* to) {
-  std::memcpy(to, &value, sizeof value);
-}
 
 constexpr int kBlock = DenseKernels::kPivots;  // columns factored together
 constexpr int kDepth = 128;  // inner length of a product at a time: what the first cache holds

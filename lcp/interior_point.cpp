@@ -134,8 +134,7 @@ class InteriorPoint::Workspace {
     system.set(problem.M);
     problem_.set(problem, system);
     // Above this ratio the inside of what redundant rows leave open is found too slowly.
-    constexpr double kAlike = 100.0;
-    are_alike_ = body_space_ && mass_ratio(std::get<FactoredMatrix>(problem.M).mass) <= kAlike;
+    are_alike_ = body_space_ && are_masses_alike(std::get<FactoredMatrix>(problem.M).mass);
     iterations_ = 0;
     sweeps_ = 0;
     const Status ending = run(problem, warm_start);

@@ -1,24 +1,16 @@
+#include <signorini/lcp/vector_lanes.h>
 #include <signorini/lcp/weighted_product.h>
 
 #include <array>
 #include <cstddef>
-#include <cstring>
 
-// Compiled without contraction of products and sums (CMakeLists.txt). One source for every
-// instruction set, as in dense_kernels.cpp.
-#define SIGNORINI_INLINE [[gnu::always_inline]] inline
+// Compiled without contraction of products and sums (CMakeLists.txt).
 
 namespace signorini::lcp {
 namespace {
 
-using Two = double __attribute__((vector_size(16)));
-using Four = double __attribute__((vector_size(32)));
-using Eight = double __attribute__((vector_size(64)));
-
+using namespace vector_lanes;
 constexpr int kSize = WeightedProduct::kSize;
-
-template <typename V>
-constexpr int kLanes = static_cast<int>(sizeof(V) / sizeof(double));
 
 template <typename V, int kColumns>
 SIGNORINI_INLINE void multiply_columns(double* block, const double* L, const double* R, int width_L,
@@ -36,8 +28,7 @@ SIGNORINI_INLINE void multiply_columns(double* block, const double* L, const dou
     V weighted[kVectors];
 #pragma GCC unroll 4
     for (int i = 0; i < kVectors; ++i) {
-      std::memcpy(&weighted[i], L + i * kLanes<V>, sizeof(V));
-      weighted[i] *= d[row];
+      weighted[i] = load<V>(L + i * kLanes<V>) * d[row];
     }
 #pragma GCC unroll 8
     for (int c = 0; c < kColumns; ++c) {
@@ -51,7 +42,7 @@ SIGNORINI_INLINE void multiply_columns(double* block, const double* L, const dou
   for (int c = 0; c < kColumns; ++c) {
 #pragma GCC unroll 4
     for (int i = 0; i < kVectors; ++i) {
-      std::memcpy(block + c * kSize + i * kLanes<V>, &sum[c][i], sizeof(V));
+      store<V>(sum[c][i], block + c * kSize + i * kLanes<V>);
     }
   }
 }

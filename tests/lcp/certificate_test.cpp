@@ -104,17 +104,37 @@ TEST(Certificate, CouplesAFrictionRowToTheNormalOfTheGivenZ) {
   problem.limits = {{.row = 1, .normal_row = 0, .coefficient = 0.5}};
   EXPECT_EQ(certify(problem, vector({2, 1})).unit_free_residual, 0.0);
   EXPECT_DOUBLE_EQ(certify(problem, vector({2, 2})).unit_free_residual, 0.2);
-  // At a limit whose product has more bits than long double: beside z = 1e25 what that lost is no
-  // 0.
-  problem.limits[0].coefficient = 0.1;
-  const double at_limit = -static_cast<double>(0.1L * 1e25L);
-  problem.M = Matrix(Matrix{{1e-30, 0.0}, {0.0, 1e-30}});
-  problem.q = vector({0.0, 1.0});
-  EXPECT_GT(certify(problem, vector({1e25, at_limit})).natural_residual, 1e-3);
-  problem = lcp(Matrix::Identity(2, 2), vector({-2, -5}));
-  problem.limits = {{.row = 1, .normal_row = 0, .coefficient = 0.5}};
   // A negative normal force carries no friction: both rows are wrong, z_n by 1 + 2.
   EXPECT_DOUBLE_EQ(certify(problem, vector({-1, 0})).unit_free_residual, 0.6);
+}
+
+// mu z_N with more bits than long double, rounded to a z_T that is outside by 2^10, or inside by
+// 2^9: w does not vanish beside either.
+TEST(Certificate, HoldsWhatRoundingTakesFromACoupledLimit) {
+  const double size = 0x1p113;
+  const auto certificates = [&](double mu, double normal, double tangential, double w) {
+    Problem problem;
+    FactoredMatrix A;
+    for (const double z : {normal, tangential}) {
+      const int block = A.mass.add_inverse(Matrix{{1.0 / size}});
+      A.add_row();
+      A.add_entry(block, vector({1.0}));
+      problem.q.conservativeResize(A.rows());
+      problem.q[A.rows() - 1] = -z;  // w = 0
+    }
+    problem.q[1] += w;
+    problem.M = A;
+    problem.limits = {{.row = 1, .normal_row = 0, .coefficient = mu}};
+    const Vector z = size * vector({normal, tangential});
+    return std::pair{certify(problem, z), Certifier().certify_quickly(problem, z, 1e-8)};
+  };
+  const double ulp = 0x1p-52;
+  const auto [outside, outside_quickly] = certificates(1.0 + 2.0 * ulp, 1.0 - ulp, 1.0 + ulp, 0.0);
+  EXPECT_GT(outside.natural_residual, 100.0);
+  EXPECT_GT(outside_quickly.natural_residual, 100.0);
+  const auto [inside, inside_quickly] = certificates(1.0 + ulp, 1.0 + ulp, -(1.0 + 2.0 * ulp), 2.0);
+  EXPECT_GT(inside.natural_residual, 0.1);
+  EXPECT_GT(inside_quickly.natural_residual, 0.1);
 }
 
 Problem one_contact(double mu, FrictionLaw law) {
