@@ -36,7 +36,8 @@ function(signorini_compile_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
-    -Woverloaded-virtual -Wdouble-promotion -Wimplicit-fallthrough)
+    -Woverloaded-virtual -Wimplicit-fallthrough
+    $<$<CXX_COMPILER_ID:GNU>:-Wdouble-promotion>)  # clang's also warns of long double, which is meant
   if(SIGNORINI_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
   endif()

@@ -216,7 +216,8 @@ inline void Certifier::Total::add_group(int row, const Measure& measure) {
 inline Certifier::Measure Certifier::measure_row(Index i) const {
   const long double z = z_[i];
   const long double w = w_[i];
-  const auto [lower, upper, lost] = bounds_[i];
+  const Bounds& bounds = bounds_[i];
+  const long double lower = bounds.lower, upper = bounds.upper, lost = bounds.lost;
   // s r(s): 0 exactly where the row is solved. Arithmetic with infinities is slow in long double.
   const auto scaled_step = [&](long double s) {
     const long double from_upper = upper < kInfinity ? std::max(w, s * (z - upper)) : w;

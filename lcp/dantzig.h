@@ -125,7 +125,6 @@ class Dantzig : public Solver {
   std::vector<double> slack_z_;   // of z
   std::vector<char> ignored_;     // rows whose w passed for blocking, but which depend on C
   bool any_ignored_ = false;
-  double tolerance_w_ = 0.0;  // of a row with scale 1
   double largest_z_ = 0.0;
 
   int pivots_ = 0;

@@ -106,7 +106,6 @@ class StructuredLemke : public Solver {
   std::vector<double> rate_;  // a column
   std::vector<double> work_;
   Vector answer_;
-  double least_pivot_ = 0.0;
   int ray_row_ = -1;
 
   int pivots_ = 0;
