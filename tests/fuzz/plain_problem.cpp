@@ -63,11 +63,14 @@ long double PlainProblem::row_residual(int row, const double* z, long double w,
     }
   }
   const long double at = z[row];
-  const long double moved = at - w / scale;  // nearer than rounding of z where it is in between
-  if (moved < least || moved > most) {
-    return std::abs(at - (moved < least ? least : most));
+  const long double back = w / scale;  // at - back would round it away beside a large z
+  if (back > at - least) {
+    return std::abs(at - least);
   }
-  return std::abs(w / scale);
+  if (back < at - most) {
+    return std::abs(at - most);
+  }
+  return std::abs(back);
 }
 
 /// |z - P_K(z - w~ / scale)|, of Coulomb's law at least |min(|z|, w_N / scale)|.
