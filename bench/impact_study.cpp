@@ -51,7 +51,7 @@ bool shown_infeasible(lcp::Status status) {
 
 /// Of (normal, tangential >= 0) from {tangential <= mu normal}, apart from what the solvers use.
 double distance_from_cone(double normal, double tangential, double mu) {
-  if (tangential <= mu * normal) {
+  if (normal >= 0.0 && tangential <= mu * normal) {
     return 0.0;
   }
   return mu * tangential <= -normal ? std::hypot(normal, tangential)

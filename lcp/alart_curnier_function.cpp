@@ -25,7 +25,7 @@ Vector3 moved(const Group& group, const Vector& x, const Vector& u, double rho) 
 Block cone_projection_derivative(double mu, int d, const Vector3& y) {
   const double tangential = tangential_norm(d, y.data());
   Block derivative = Block::Zero();
-  if (tangential <= mu * y[0]) {
+  if (y[0] >= 0.0 && tangential <= mu * y[0]) {
     derivative.diagonal().head(d).setOnes();
     return derivative;
   }

@@ -29,7 +29,7 @@ template <typename Scalar>
 void project_on_cone(Scalar mu, int dimension, const Scalar* x, Scalar* p) {
   const Scalar normal = x[0];
   const Scalar tangential = tangential_norm(dimension, x);
-  if (tangential <= mu * normal) {  // in K
+  if (normal >= 0 && tangential <= mu * normal) {  // in K, also where mu or mu x_N is 0
     for (int k = 0; k < dimension; ++k) {
       p[k] = x[k];
     }

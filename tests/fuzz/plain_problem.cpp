@@ -29,7 +29,7 @@ long double norm(const long double* x, int count) {
 /// The nearest point to x of {|x_T| <= mu x_N}, in its place.
 void project(long double mu, int dimension, long double* x) {
   const long double tangential = norm(x + 1, dimension - 1);
-  if (tangential <= mu * x[0]) {
+  if (x[0] >= 0.0L && tangential <= mu * x[0]) {
     return;
   }
   const long double along = (x[0] + mu * tangential) / (1.0L + mu * mu);

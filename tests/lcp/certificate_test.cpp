@@ -212,6 +212,28 @@ TEST(Certificate, SeesTheNormalPartOfACoulombContactUnderAnyFriction) {
   EXPECT_LE(residual(vector({1e-9, -1, 0}), vector({0, 1, 0})), 1e-8) << "slides";
 }
 
+// K is a half line: without tangential parts a point below it is on the line through it.
+TEST(Certificate, OfAContactWithoutFrictionIsThatOfItsNormal) {
+  for (const FrictionLaw law : {FrictionLaw::kCoulomb, FrictionLaw::kAssociated}) {
+    for (const double slip : {0.0, 0.5}) {
+      for (const auto& [z, w] : {std::pair(-1.0, 0.0), {0.0, 1.0}, {-1.0, 1.0}, {0.0, -1.0},
+                                 {1.0, 0.0}, {1.0, 1.0}, {0.0, 0.0}}) {
+        Problem problem = lcp(Matrix::Identity(3, 3), vector({w - z, slip, 0}));
+        problem.cones = {{.normal_row = 0, .dimension = 3, .coefficient = 0.0}};
+        problem.friction_law = law;
+        const Certificate c = certify(problem, vector({z, 0, 0}));
+        const double residual = std::abs(std::min(z, w));
+        EXPECT_DOUBLE_EQ(c.natural_residual, residual / (1.0 + problem.q.cwiseAbs().maxCoeff()))
+            << z << " " << w << " " << slip;
+        Certifier certifier;
+        EXPECT_EQ(judge(certifier.certify_quickly(problem, vector({z, 0, 0}), kTolerance),
+                        kTolerance, Status::kStalled),
+                  residual > 0.0 ? Status::kStalled : Status::kSolved);
+      }
+    }
+  }
+}
+
 // z and w within the residual of a pair that obeys Coulomb's law: certificate.h's construction.
 TEST(Certificate, OfACoulombContactBoundsTheDistanceToItsLaw) {
   std::mt19937 random(5);

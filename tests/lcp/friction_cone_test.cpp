@@ -27,6 +27,8 @@ TEST(FrictionCone, KeepsItsOwnPointsAndSendsThePolarConeToZero) {
   EXPECT_EQ(projected(0.5, 2, {-1, 1.9, 0}), (Point{0, 0, 0}));
   EXPECT_EQ(projected(0.0, 3, {3, 4, 5}), (Point{3, 0, 0}));
   EXPECT_EQ(projected(0.0, 3, {-3, 4, 5}), (Point{0, 0, 0}));
+  EXPECT_EQ(projected(0.0, 3, {-3, 0, 0}), (Point{0, 0, 0}));
+  EXPECT_EQ(projected(1e-200, 3, {-1e-200, 0, 0}), (Point{0, 0, 0}));
 }
 
 // Moreau: x = p + m with p in K, m in the polar cone, p.m = 0.
