@@ -273,7 +273,7 @@ mpf_class exact_cone_step(const Problem& problem, const FrictionCone& cone, cons
   }
   norm = sqrt(norm);
   std::vector<mpf_class> p = x;
-  if (norm > mu * x[0]) {
+  if (x[0] < 0 || norm > mu * x[0]) {
     mpf_class along((x[0] + mu * norm) / (1 + mu * mu), kBits);
     if (along < 0) {
       along = 0;

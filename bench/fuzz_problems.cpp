@@ -315,6 +315,21 @@ const char* limits(Dice& dice, Problem& problem) {
   return problem.limits.empty() ? "" : "coupled limits";
 }
 
+/// Tangential rows that nothing moves: their w is exactly 0, as axis-aligned scenes have it.
+void still_tangents(Dice& dice, Problem& problem) {
+  std::vector<bool> still(problem.size());
+  for (lcp::FrictionCone& cone : problem.cones) {
+    for (int k = 1; k < cone.dimension; ++k) {
+      still[cone.normal_row + k] = true;
+      problem.q[cone.normal_row + k] = 0.0;
+    }
+    cone.coefficient = dice.percent(50) ? 0.0 : cone.coefficient;
+  }
+  for_each_entry(problem.M, [&still](Index i, Index j, double& value) {
+    value = still[i] || still[j] ? 0.0 : value;
+  });
+}
+
 const char* cones(Dice& dice, Problem& problem) {
   const int n = static_cast<int>(problem.size());
   const int dimension = dice.percent(70) ? 3 : 2;
@@ -328,7 +343,14 @@ const char* cones(Dice& dice, Problem& problem) {
   }
   problem.friction_law =
       dice.percent(60) ? lcp::FrictionLaw::kCoulomb : lcp::FrictionLaw::kAssociated;
-  return problem.cones.empty() ? "" : "cones";
+  if (problem.cones.empty()) {
+    return "";
+  }
+  if (dice.percent(10)) {
+    still_tangents(dice, problem);
+    return "cones with still tangents";
+  }
+  return "cones";
 }
 
 struct Change {
