@@ -15,8 +15,11 @@ namespace {
 constexpr double kSmallestAlpha = 1e-12;
 constexpr double kLargestAlpha = 1e3;
 constexpr double kFinestTolerance = 1e-15;
-constexpr int kFewSteps = 12;  // of an inner iteration that went well
-constexpr double kFall = 0.1;  // of alpha after one of few steps
+// What alpha falls to after an inner iteration, by its steps: it went well with two, and without
+// all it may take.
+constexpr int kFewSteps = 2;
+constexpr double kFastFall = 0.1;
+constexpr double kFall = 0.3;
 constexpr double kSlowFall = 0.5;
 constexpr double kRise = 3.0;
 constexpr double kAboveFailed = 2.0;  // where alpha goes at first, of the last that failed
@@ -95,7 +98,7 @@ double AlartCurnier::Workspace::violation() {
 AlartCurnier::Workspace::Inner AlartCurnier::Workspace::newton(const AlartCurnierSettings& settings,
                                                                double alpha, double error,
                                                                double tolerance) {
-  constexpr double kSmallestStep = 0.1;
+  constexpr double kSmallestStep = 0.5;
   constexpr double kArmijo = 1e-4;
   std::array<double, 4> recent{};
   rho_ = 1.0 / std::sqrt(std::max(alpha, std::min(1.0, error)));
@@ -118,7 +121,7 @@ AlartCurnier::Workspace::Inner AlartCurnier::Workspace::newton(const AlartCurnie
     for (;; t *= 0.5) {
       trial_ = x_ + t * dx_;
       size = evaluate(alpha, trial_);
-      if (size <= (1.0 - kArmijo * t) * reference || t < kSmallestStep) {
+      if (size <= (1.0 - kArmijo * t) * reference || t <= kSmallestStep) {
         break;
       }
     }
@@ -182,7 +185,9 @@ Status AlartCurnier::Workspace::solve(const Problem& problem, const AlartCurnier
     if (!is_stuck && (inner.converged || is_near)) {
       // Where proximal points lead away, only the problem itself is of use.
       const double lowest = after > error ? 0.0 : kAboveFailed * failed;
-      const double fallen = alpha * (inner.steps < kFewSteps ? kFall : kSlowFall);
+      const double fallen = alpha * (inner.steps <= kFewSteps             ? kFastFall
+                                     : inner.steps < settings.inner_steps ? kFall
+                                                                          : kSlowFall);
       alpha = std::min(alpha, std::max({fallen, lowest, kSmallestAlpha}));
       failed = after > error ? 0.0 : kForgets * failed;
       error = after;

@@ -9,13 +9,14 @@ namespace signorini::lcp {
 /// Settings of AlartCurnier. Lengths are those of the scaled problem: dimensionless.
 struct AlartCurnierSettings : SolverSettings {
   /// Newton steps when max_iterations is -1; each is one factorisation.
-  static constexpr int kDefaultSteps = 4000;
+  static constexpr int kDefaultSteps = 10000;
 
   /// The first proximal weight alpha, > 0: large makes the Newton systems well conditioned and the
   /// outer iteration slow. It follows the inner iterations from there.
   double proximal = 0.1;
-  /// Newton steps of one proximal problem, >= 1, before alpha is raised.
-  int inner_steps = 30;
+  /// Newton steps of one proximal problem, >= 1, before alpha is raised. What converges does so in
+  /// few; the rest cycles between states of the contacts.
+  int inner_steps = 12;
 
   /// @throws std::invalid_argument that names the setting, its value and the bound.
   void validate() const;
@@ -29,14 +30,15 @@ struct AlartCurnierSettings : SolverSettings {
 ///
 ///     x_k+1: F(x, W x + b + alpha_k (x - x_k)) = 0,
 ///
-/// each found by a semismooth Newton method with a nonmonotone line search on |F| (Alart, Curnier
-/// 1991; proximal form: Acary, Bremond, Huber, On solving contact problems with Coulomb friction,
-/// 2018, section 5.2). Redundant contacts, for which plain Newton has a singular matrix, only make
-/// alpha matter; the line search weighs u by rho = max(alpha, min(1, error))^-1/2. alpha falls
-/// while the inner iterations succeed, fastest where they are few, and rises when they fail; where
-/// it failed it does not come back at once. A start from which 20 proximal steps bring less than a
-/// tenth, or that the largest alpha or the finest tolerance does not help, is given up for 0
-/// (once): forces that strain against each other, once there, stay.
+/// each found by a semismooth Newton method (Alart, Curnier 1991; proximal form: Acary, Bremond,
+/// Huber, On solving contact problems with Coulomb friction, 2018, section 5.2). Redundant
+/// contacts, for which plain Newton has a singular matrix, only make alpha matter. A step is halved
+/// where |F| would be above its largest of the last four, once: shorter steps find minima of |F|
+/// that are no zeros. u weighs rho = max(alpha, min(1, error))^-1/2 there. alpha falls while the
+/// inner iterations succeed, fastest where they are few, and rises when they fail; where it failed
+/// it does not come back at once. A start from which 20 proximal steps bring less than a tenth, or
+/// that the largest alpha or the finest tolerance does not help, is given up for 0 (once): forces
+/// that strain against each other, once there, stay.
 ///
 /// No solution is promised: Coulomb's problem may have none, and the proximal iteration is known to
 /// converge only where W is monotone on the cones. Statuses beside solved: kIterationLimit,

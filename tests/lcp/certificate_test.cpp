@@ -216,8 +216,13 @@ TEST(Certificate, SeesTheNormalPartOfACoulombContactUnderAnyFriction) {
 TEST(Certificate, OfAContactWithoutFrictionIsThatOfItsNormal) {
   for (const FrictionLaw law : {FrictionLaw::kCoulomb, FrictionLaw::kAssociated}) {
     for (const double slip : {0.0, 0.5}) {
-      for (const auto& [z, w] : {std::pair(-1.0, 0.0), {0.0, 1.0}, {-1.0, 1.0}, {0.0, -1.0},
-                                 {1.0, 0.0}, {1.0, 1.0}, {0.0, 0.0}}) {
+      for (const auto& [z, w] : {std::pair(-1.0, 0.0),
+                                 {0.0, 1.0},
+                                 {-1.0, 1.0},
+                                 {0.0, -1.0},
+                                 {1.0, 0.0},
+                                 {1.0, 1.0},
+                                 {0.0, 0.0}}) {
         Problem problem = lcp(Matrix::Identity(3, 3), vector({w - z, slip, 0}));
         problem.cones = {{.normal_row = 0, .dimension = 3, .coefficient = 0.0}};
         problem.friction_law = law;
