@@ -20,9 +20,11 @@ namespace {
 namespace fs = std::filesystem;
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr int kMaxFrictionRows = 120;
 constexpr int kMaxRows = 120;  // sanitizers slow this down by ten and more
 constexpr int kMaxGeneratedRows = 120;
 #else
+constexpr int kMaxFrictionRows = 5000;
 constexpr int kMaxRows = 600;
 constexpr int kMaxGeneratedRows = 1024;
 #endif
@@ -133,6 +135,32 @@ TEST_P(AutoSolves, Certified) {
 }
 
 INSTANTIATE_TEST_SUITE_P(RealProblems, AutoSolves, testing::ValuesIn(every_folder()), test_name);
+
+/// The same contacts on ice, with half their friction and with three times as much.
+class AutoSolvesWithOtherFriction : public testing::TestWithParam<Folder> {};
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(AutoSolvesWithOtherFriction);
+
+TEST_P(AutoSolvesWithOtherFriction, Certified) {
+  const Problem given = read_problem(GetParam().path);
+  for (const double factor : {0.0, 0.5, 3.0}) {
+    Problem problem = given;
+    for (FrictionCone& cone : problem.cones) {
+      cone.coefficient *= factor;
+    }
+    SCOPED_TRACE(factor);
+    expect_certified(solve("auto", problem));
+  }
+}
+
+std::vector<Folder> friction_folders() {
+  std::vector<Folder> found = folders("contact-problems", kMaxFrictionRows, "fc2d");
+  const std::vector<Folder> in_space = folders("contact-problems", kMaxFrictionRows, "fc3d");
+  found.insert(found.end(), in_space.begin(), in_space.end());
+  return found;
+}
+
+INSTANTIATE_TEST_SUITE_P(RealProblems, AutoSolvesWithOtherFriction,
+                         testing::ValuesIn(friction_folders()), test_name);
 
 class LemkeSolves : public testing::TestWithParam<Folder> {};
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(LemkeSolves);
