@@ -25,8 +25,8 @@ namespace signorini::lcp {
 /// factorisations, whatever is redundant.
 class ProximalNewton {
  public:
-  /// Outer steps from the problem's best x until the residual no longer halves or is a tenth of
-  /// the tolerance.
+  /// Outer steps from the problem's best x until the residual no longer halves (at the first step
+  /// from far away: falls to 3 %) or is a tenth of the tolerance.
   /// @param proximal delta > 0 of the first step, of a unit diagonal; 3 % of it in every
   /// further one, down to least_proximal: large ones are quick from far away, small ones near the
   /// solution. Where it is larger than least_proximal x is taken for far away, and every step

@@ -1,4 +1,5 @@
 #include <signorini/lcp/interior_point.h>
+#include <signorini/lcp/nncg.h>
 
 #include "allocation_count.h"
 #include "definition_residual.h"
@@ -365,6 +366,26 @@ TEST(InteriorPoint, AFailedWarmSetIsGoneOnFromByProximalPoints) {
     EXPECT_LE(set_alone.statistics.factorizations, 8) << "an iteration is a factorisation";
     EXPECT_LE(definition_residual(perturbed(problem, 5), warm.z), 1e-7);
   }
+}
+
+/// What a few sweeps leave is small everywhere and right nowhere: proximal points, which gain little
+/// from there, leave it to the interior point after their first step (28 factorisations before, 16
+/// cold).
+TEST(InteriorPoint, ProximalPointsThatGainLittleEndEarly) {
+  const Problem problem = make_family({.family = "pyramid3d", .size = 10});
+  NncgSettings few;
+  few.max_iterations = 30;
+  few.tolerance = 1e-12;
+  Result swept;
+  Nncg(few).solve(problem, swept);
+  ASSERT_LT(swept.certificate.unit_free_residual, 0.01);
+  InteriorPoint solver;
+  Result cold;
+  Result warm;
+  solver.solve(problem, cold);
+  solver.solve(problem, warm, &swept.z);
+  EXPECT_EQ(warm.status, Status::kSolved);
+  EXPECT_LE(warm.statistics.factorizations, cold.statistics.factorizations + 5);
 }
 
 /// Where a factorisation costs much, sweeps find the set first: 13 factorisations without them.
