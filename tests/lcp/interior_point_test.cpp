@@ -368,9 +368,9 @@ TEST(InteriorPoint, AFailedWarmSetIsGoneOnFromByProximalPoints) {
   }
 }
 
-/// What a few sweeps leave is small everywhere and right nowhere: proximal points, which gain little
-/// from there, leave it to the interior point after their first step (28 factorisations before, 16
-/// cold).
+/// What a few sweeps leave is small everywhere and right nowhere: proximal points, which gain
+/// little from there, leave it to the interior point after their first step (28 factorisations
+/// before, 16 cold).
 TEST(InteriorPoint, ProximalPointsThatGainLittleEndEarly) {
   const Problem problem = make_family({.family = "pyramid3d", .size = 10});
   NncgSettings few;
