@@ -13,7 +13,7 @@ struct NsgsSettings : SolverSettings {
 
   /// Sweeps between two looks at the residual, >= 1; the first looks come at sweeps 0, 1, 2, 4 ...
   int check_period = 16;
-  /// Iterations of a contact's own problem, >= 1. It also ends where they no longer move.
+  /// Iterations of a contact's own problem, >= 1. They end earlier where they move little (below).
   int local_iterations = 50;
 
   /// @throws std::invalid_argument that names the setting, its value and the bound.
@@ -23,7 +23,8 @@ struct NsgsSettings : SolverSettings {
 /// Nonsmooth Gauss-Seidel over contacts: sweeps over the groups c (a cone's rows, or one row with
 /// bounds), each time solving the group's own problem with the newest z of all others,
 ///
-///     z_c <- P_K(z_c - w~_c / D_c) to convergence,   w_c = M_cc z_c + (w_c - M_cc z_c)_old,
+///     z_c <- P_K(z_c - w~_c / D_c) until it moves by less than 3 % of its change,
+///     w_c = M_cc z_c + (w_c - M_cc z_c)_old,
 ///
 /// w~ and D_c as in Certificate (Jean, The non-smooth contact dynamics method, 1999; Acary,
 /// Bremond, Huber 2018, section 4.2; the local iteration is De Saxce and Feng's). Cheap to moderate
