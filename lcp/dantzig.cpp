@@ -13,15 +13,18 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kOfTolerance = 1e-2;      // what counts as violated, of the wanted residual
-constexpr double kCheckSchurBelow = 1e-5;  // smaller Schur complements are recomputed from M
-constexpr double kLeastCurvature = 1e-3;   // a dependent row is not driven first
-constexpr double kNoRate = 1e-12;          // of the largest rate: does not move
-constexpr double kRelax = 1e-13;           // of the largest z: bounds are met within this (Harris)
-constexpr int kCorrections = 10;           // refinement steps at most
-constexpr int kRefreshes = 50;             // passes of refinement and driving at most
-constexpr double kExactSymmetry = 1e-12;   // rounding of the source
-constexpr double kRounding = 8.0;          // roundings that are no violation
+constexpr double kOfTolerance = 1e-2;  // what counts as violated, of the wanted residual
+// Schur complements below this are recomputed from M. In a tableau, where an exchange on p costs
+// the others eps / p, only those below kSafe times that, or kSafe times what counts as dependent.
+constexpr double kCheckSchurBelow = 1e-5;
+constexpr double kSafe = 100.0;
+constexpr double kLeastCurvature = 1e-3;  // a dependent row is not driven first
+constexpr double kNoRate = 1e-12;         // of the largest rate: does not move
+constexpr double kRelax = 1e-13;          // of the largest z: bounds are met within this (Harris)
+constexpr int kCorrections = 10;          // refinement steps at most
+constexpr int kRefreshes = 50;            // passes of refinement and driving at most
+constexpr double kExactSymmetry = 1e-12;  // rounding of the source
+constexpr double kRounding = 8.0;         // roundings that are no violation
 
 void require(bool good, const char* setting, const char* bound, double value) {
   if (!good) {
@@ -90,6 +93,7 @@ bool Dantzig::start(const Problem& problem, const Vector* warm_start) {
   ignored_.assign(n, 0);
   any_ignored_ = false;
   largest_z_ = 0.0;
+  least_pivot_ = 1.0;
   // Rows of large scale have small w in the caller's units, where the residual is measured.
   const double largest_q = problem.q.cwiseAbs().maxCoeff();
   const double wanted = kOfTolerance * settings_.tolerance;
@@ -289,7 +293,7 @@ Dantzig::Ending Dantzig::drive(int row, const Deadline& deadline) {
 }
 
 /// How far the basic variable of row i can go at this rate, and in `bound` where it ends.
-double Dantzig::way(int i, double rate, double& bound) const {
+inline double Dantzig::way(int i, double rate, double& bound) const {
   if (basis_->contains(i)) {
     bound = rate > 0.0 ? scaled_.upper(i) : scaled_.lower(i);
     return rate > 0.0 ? bound - z_[i] : z_[i] - bound;
@@ -341,6 +345,13 @@ bool Dantzig::depends(int row) {
   }
   const int n = scaled_.size();
   double length = 1.0;
+  for (int i = 0; i < n; ++i) {
+    length += basis_->contains(i) ? rate_[i] * rate_[i] : 0.0;
+  }
+  const double most = settings_.dependence_tolerance * length;
+  if (basis_ == &tableau_ && rate_[row] > kSafe * std::max(most, kEpsilon / least_pivot_)) {
+    return false;
+  }
   double product = 0.0;
   std::vector<double>& image = ray_work_;
   std::fill(image.begin(), image.end(), 0.0);
@@ -348,7 +359,6 @@ bool Dantzig::depends(int row) {
   for (int i = 0; i < n; ++i) {
     if (basis_->contains(i) && rate_[i] != 0.0) {
       scaled_.add_column(i, rate_[i], image.data());
-      length += rate_[i] * rate_[i];
     }
   }
   for (int i = 0; i < n; ++i) {
@@ -357,11 +367,14 @@ bool Dantzig::depends(int row) {
     }
   }
   product += image[row];
-  return !(product > settings_.dependence_tolerance * length);
+  return !(product > most);
 }
 
 bool Dantzig::exchange(int row) {
   ++pivots_;
+  if (!basis_->contains(row)) {
+    least_pivot_ = std::min(least_pivot_, std::abs(basis_->pivot(row)));
+  }
   return basis_->exchange(row);
 }
 

@@ -126,6 +126,7 @@ class Dantzig : public Solver {
   std::vector<char> ignored_;     // rows whose w passed for blocking, but which depend on C
   bool any_ignored_ = false;
   double largest_z_ = 0.0;
+  double least_pivot_ = 1.0;  // that a row entered C with
 
   int pivots_ = 0;
   int flips_ = 0;  // moves of a row from bound to bound

@@ -14,14 +14,20 @@ namespace {
 #define SIGNORINI_WIDE
 #endif
 
-/// The lower triangle of table -= t t^T inverse, n x n.
-SIGNORINI_WIDE void subtract_product(int n, double inverse, const double* __restrict t,
+constexpr int kLanes = 4;
+
+/// The lower triangle of table -= t t^T inverse, n x n, by whole lanes: column k from the last
+/// multiple of kLanes up to k on, to `height`, a multiple of kLanes >= n. What stands above the
+/// diagonal and below row n changes with it, and is read by nobody.
+SIGNORINI_WIDE void subtract_product(int n, int height, double inverse, const double* __restrict t,
                                      double* __restrict table) {
-  for (int k = 0; k < n; ++k, table += n) {
+  for (int k = 0; k < n; ++k, table += height) {
     const double factor = inverse * t[k];
     if (factor != 0.0) {
-      for (int i = k; i < n; ++i) {
-        table[i] -= factor * t[i];
+      for (int i = k / kLanes * kLanes; i < height; i += kLanes) {
+        for (int lane = i; lane < i + kLanes; ++lane) {
+          table[lane] -= factor * t[lane];
+        }
       }
     }
   }
@@ -34,9 +40,10 @@ void PrincipalTableau::reset(const SymmetricLcp& problem) {
   n_ = problem.size();
   factorizations_ = 0;
   member_.assign(n_, 0);
-  column_.resize(n_);
+  height_ = (n_ + kLanes - 1) / kLanes * kLanes;
+  column_.assign(height_, 0.0);
   right_.resize(n_);
-  table_.resize(static_cast<std::size_t>(n_) * n_);
+  table_.resize(static_cast<std::size_t>(n_) * height_);
   copy();
 }
 
@@ -74,7 +81,7 @@ bool PrincipalTableau::exchange(int j) {
   std::copy(at(j) + j, at(j) + n_, t + j);
   const double inverse = 1.0 / t[j];
   t[j] = 0.0;
-  subtract_product(n_, inverse, t, table_.data());
+  subtract_product(n_, height_, inverse, t, table_.data());
   const double own = std::abs(inverse);
   for (int i = 0; i < j; ++i) {
     at(i)[j] = own * t[i];

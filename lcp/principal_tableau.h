@@ -18,7 +18,7 @@ class PrincipalTableau : public PrincipalBasis {
   void reset(const SymmetricLcp& problem) override;
   void column(int j, double* rate) override;
   [[nodiscard]] double pivot(int j) const override {
-    const double own = table_[static_cast<std::size_t>(j) * (n_ + 1)];
+    const double own = table_[static_cast<std::size_t>(j) * (height_ + 1)];
     return member_[j] != 0 ? -own : own;
   }
   [[nodiscard]] bool exchange(int j) override;
@@ -28,15 +28,16 @@ class PrincipalTableau : public PrincipalBasis {
   [[nodiscard]] int factorizations() const override { return factorizations_; }
 
  private:
-  double* at(int j) { return table_.data() + static_cast<std::size_t>(j) * n_; }
+  double* at(int j) { return table_.data() + static_cast<std::size_t>(j) * height_; }
   void copy();
   int sweep_members(double least_pivot);
 
   const SymmetricLcp* problem_ = nullptr;
   int n_ = 0;
+  int height_ = 0;  // of a column in table_: n and some, see exchange()
   int factorizations_ = 0;
   std::vector<double> table_;   // column-major, rows j.. of column j are used
-  std::vector<double> column_;  // T_j
+  std::vector<double> column_;  // T_j, then zeros
   std::vector<int> members_;    // work
   std::vector<double> right_;   // work
 };
