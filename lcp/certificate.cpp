@@ -275,7 +275,7 @@ Certifier::Measure Certifier::measure_cone(const Problem& problem, std::size_t c
     const long double sum_of_norms = moved_tangential + tangential;
     const long double outside = (tangential - mu * z[0]) + mu * rest[0] +
                                 (sum_of_norms > 0.0L ? across / sum_of_norms : 0.0L);
-    if (outside > 0.0L || moved[0] < 0.0L) {  // without friction below K nothing is outside
+    if (outside > 0.0L || moved[0] < 0.0L) {  // of mu = 0 and x_T = 0 outside is 0 below K too
       if (!(moved[0] + mu * moved_tangential > 0.0L)) {  // P_K(x) = 0
         std::copy(z, z + d, rest.begin());
       } else {

@@ -35,7 +35,8 @@ struct DantzigSettings : SolverSettings {
 ///
 /// It departs from Baraff's in this:
 /// - redundant rows are part of the method, not of its failures. A driven row that depends on C
-///   (tested by its full Schur complement, recomputed from M where it is small) has a direction v
+///   (tested by its full Schur complement, recomputed from M where it is small and exchanges may
+///   have lost it) has a direction v
 ///   with M v = 0: all forces move along v, no w changes, until a basic z_j meets a bound and
 ///   leaves, and the row may be independent of the rest. If none meets one, v is a ray that proves
 ///   infeasibility (Result::ray, for an LCP; otherwise the detail names the row);

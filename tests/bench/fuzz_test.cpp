@@ -278,30 +278,40 @@ TEST_P(NeverALie, FastSample) {
 struct Found {
   const char* solver;
   std::int64_t index;  // of seed 1
+  const char* recipe;  // without which it is another problem
   const char* what;
 };
 
 TEST(FuzzStudy, WhatWasFoundStaysMended) {
   constexpr Found kFound[] = {
-      {"dantzig", 78973, "a dependent row moved between far bounds without end"},
-      {"dantzig", 84379, "the same"},
-      {"dantzig", 99608, "the same, n = 4"},
-      {"pgs", 83624, "q = 0 and a w that long double loses, called solved"},
-      {"symmetric-pgs", 83624, "the same"},
-      {"nncg", 83624, "the same"},
-      {"cone-interior-point", 39840, "a cone's scale too small by half, from a closed form"},
-      {"cone-interior-point", 81171, "the same, by forty powers of ten"},
-      {"alart-curnier", 81171, "the same"},
-      {"alart-curnier", 2018224, "a floor of mu |w_T| larger than that of the boundary"},
-      {"alart-curnier", 2024692, "the same"},
-      {"cone-interior-point", 3069053, "mu = 1e12 times a slip that long double loses beside it"},
-      {"sticking", 830811, "mu = 1e12 times what long double loses of a slip"},
-      {"cone-interior-point", 619561, "a floor that the judge's doubles made infinite: a crash"},
+      {"dantzig", 78973, "random factored, bounds",
+       "a dependent row moved between far bounds without end"},
+      {"dantzig", 84379, "random psd, perturbed, units scaled, bounds", "the same"},
+      {"dantzig", 99608, "random psd, units scaled, sparse, bounds", "the same, n = 4"},
+      {"pgs", 83624, "psd-repeated, bounds", "q = 0 and a w that long double loses, called solved"},
+      {"symmetric-pgs", 83624, "psd-repeated, bounds", "the same"},
+      {"nncg", 83624, "psd-repeated, bounds", "the same"},
+      {"cone-interior-point", 39840, "any-solvable, row repeated, rows scaled, cones",
+       "a cone's scale too small by half, from a closed form"},
+      {"cone-interior-point", 81171, "random any, rows scaled, sparse, cones",
+       "the same, by forty powers of ten"},
+      {"alart-curnier", 81171, "random any, rows scaled, sparse, cones", "the same"},
+      {"alart-curnier", 2018224, "random factored, cones",
+       "a floor of mu |w_T| larger than that of the boundary"},
+      {"cone-interior-point", 3069053, "mass-ratio, rows scaled, cones",
+       "mu = 1e12 times a slip that long double loses beside it"},
+      {"sticking", 830811, "random factored, cones",
+       "mu = 1e12 times what long double loses of a slip"},
+      {"cone-interior-point", 619561, "near zero, rows scaled, cones",
+       "a floor that the judge's doubles made infinite: a crash"},
+      {"cone-interior-point", 43407, "random any, cones with still tangents",
+       "mu = 0 and tangents that nothing moves, below the cone"},
   };
   for (const Found& found : kFound) {
     std::ostringstream out;
     const FuzzCounts counts =
         run_fuzz_study({.first = found.index, .problems = 1, .solver = found.solver}, out);
+    EXPECT_EQ(draw_fuzz_problem(1, found.index).recipe, found.recipe) << found.what;
     EXPECT_EQ(counts.wrong(), 0) << found.what << "\n" << out.str();
     EXPECT_EQ(counts.rows.at(0).judged, 1);
   }

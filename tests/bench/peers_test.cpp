@@ -213,6 +213,29 @@ TEST(FrictionForms, ConesThatSlideTakeAlartCurnierFewFactorisations) {
   }
 }
 
+TEST(FrictionForms, AlartCurnierSolvesPilesOfSixtyFourSpheres) {
+  // 20 piles in 2157 factorisations together and at most 408; with 30 steps a proximal problem, and
+  // those halved four times, one alone took more than 2000.
+  int all = 0;
+  for (const double ratio : {1.0, 1e3}) {
+    for (const bool at_rest : {false, true}) {
+      for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        const FamilyScene scene = make_family_scene({.family = "spheres",
+                                                     .size = 64,
+                                                     .mass_ratio = ratio,
+                                                     .seed = seed,
+                                                     .at_rest = at_rest});
+        lcp::Result result;
+        lcp::make_solver("alart-curnier")
+            ->solve(make_cones(scene, 0.3 + 0.1 * static_cast<double>(seed)), result);
+        EXPECT_EQ(result.status, lcp::Status::kSolved) << ratio << " " << at_rest << " " << seed;
+        all += result.statistics.factorizations;
+      }
+    }
+  }
+  EXPECT_LE(all, 3200);
+}
+
 TEST(FrictionForms, TheConeInteriorPointGoesOnWhileLoadsBuildUp) {
   // Measured 29, 17 and 14, and 6 of the polish for the first. The gap grows for a while; given up
   // then they took more than 209, 31 and 21.
