@@ -6,6 +6,7 @@
 #include <signorini/lcp/number_text.h>
 #include <signorini/lcp/proximal_newton.h>
 #include <signorini/lcp/scaled_problem.h>
+#include <signorini/lcp/smoothing_newton.h>
 
 #include <algorithm>
 #include <cmath>
@@ -171,7 +172,7 @@ class InteriorPoint::Workspace {
   [[nodiscard]] bool newton_direction();
   [[nodiscard]] bool factor();
   int guess_set();
-  [[nodiscard]] bool approach_by_proximal_points();
+  [[nodiscard]] bool approach_by_smoothing();
   [[nodiscard]] bool try_set();
   [[nodiscard]] bool cross_over(double residual, bool has_grown);
   bool polish(int most_factorizations);
@@ -187,6 +188,7 @@ class InteriorPoint::Workspace {
   ScaledProblem problem_;
   ActiveSetNewton active_set_;
   ProximalNewton proximal_newton_;
+  SmoothingNewton smoothing_newton_;
   std::unique_ptr<Nncg> sweeper_, warm_sweeper_;
   Result swept_;
   int iterations_ = 0;
@@ -226,6 +228,9 @@ Status InteriorPoint::Workspace::run(const Problem& problem, const Vector* warm_
     } else if (start == nullptr && start_on_all_rows()) {
       return Status::kStalled;
     }
+  }
+  if (warm_start != nullptr) {
+    smoothing_newton_.reserve(problem_.size());  // whether or not this one comes to it
   }
   if (start != nullptr && start_warm(*start)) {
     return Status::kStalled;
@@ -337,7 +342,7 @@ bool InteriorPoint::Workspace::start_warm(const Vector& warm_start) {
     return true;
   }
   guess_.clear();
-  if (approach_by_proximal_points()) {
+  if (approach_by_smoothing()) {
     return true;
   }
   const double size =
@@ -371,24 +376,23 @@ bool InteriorPoint::Workspace::start_warm(const Vector& warm_start) {
   return false;
 }
 
-/// From a start that is near, proximal points take about as many factorisations as the interior
-/// point, each with one solve and nothing else; not where masses differ much. Sweeps leave an error
-/// that is as near and of longer waves: from what they made of a warm start they take a third.
-/// @return whether the problem is solved
-bool InteriorPoint::Workspace::approach_by_proximal_points() {
-  const double near = sweeps_ == 0 ? 0.03 : 1e-4;
-  constexpr double kFirstProximal = 3e-4;
-  constexpr int kMostSteps = 10;
-  constexpr int kMostFactorizations = 36;
-  if (body_space_ && are_alike_ && problem_.best_residual() <= near) {
-    const int most = settings_.max_iterations >= 0
-                         ? std::min(settings_.max_iterations, kMostFactorizations)
-                         : kMostFactorizations;
-    proximal_newton_.improve(problem_, bodies_, std::max(kFirstProximal, settings_.polish_proximal),
-                             settings_.polish_proximal, kMostSteps, bodies_.factorizations() + most,
-                             settings_.tolerance, *deadline_);
+/// Smoothing from a warm start, where it arrives in a third to a half of the interior point's
+/// factorisations, and what it left to proximal points. Not from sweeps, whose error is of long
+/// waves, and not where M is not symmetric: there it does not arrive as a rule. @return whether the
+/// problem is solved
+bool InteriorPoint::Workspace::approach_by_smoothing() {
+  constexpr double kNear = 0.3;
+  constexpr int kMostSteps = 14;
+  constexpr int kMostOfPolish = 6;
+  const int most =
+      settings_.max_iterations >= 0 ? std::min(settings_.max_iterations, kMostSteps) : kMostSteps;
+  if (sweeps_ > 0 || most == 0 || !problem_.system().is_symmetric() ||
+      problem_.best_residual() > kNear) {
+    return false;
   }
-  return problem_.best_residual() <= settings_.tolerance;
+  trial_ = problem_.best();
+  return smoothing_newton_.improve(problem_, trial_, most, settings_.tolerance, *deadline_) ||
+         polish(kMostOfPolish);
 }
 
 /// Tries the set of all rows from x = 0, where all contacts press at rest. @return whether the
@@ -635,10 +639,9 @@ bool InteriorPoint::Workspace::cross_over(double residual, bool has_grown) {
 bool InteriorPoint::Workspace::polish(int most_factorizations) {
   constexpr double kWorthPolishing = 1e-4;  // from a worse start the active set is a guess
   if (body_space_ && problem_.best_residual() <= kWorthPolishing) {
-    proximal_newton_.improve(problem_, bodies_, settings_.polish_proximal,
-                             settings_.polish_proximal, settings_.max_polish_steps,
-                             bodies_.factorizations() + most_factorizations, settings_.tolerance,
-                             *deadline_);
+    proximal_newton_.improve(
+        problem_, bodies_, settings_.polish_proximal, settings_.max_polish_steps,
+        bodies_.factorizations() + most_factorizations, settings_.tolerance, *deadline_);
   }
   return problem_.best_residual() <= settings_.tolerance;
 }

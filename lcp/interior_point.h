@@ -54,9 +54,9 @@ struct InteriorPointSettings : SolverSettings {
 /// body (whitened_rows.h). Redundant contacts cost nothing and disturb nothing. A given M may be
 /// nonsymmetric; the method is made for semidefinite M, whatever else it solves.
 ///
-/// A warm start is tried as an active set first; if that fails and its residual is below 0.03 (1e-4
-/// after sweeps), by proximal points (proximal_newton.h, up to 36 factorisations or max_iterations)
-/// where masses are within 1 to 100. Where contacts of bodies have no upper bounds and
+/// A warm start is tried as an active set first; if that fails, M is symmetric and its residual is
+/// below 0.3, by smoothing (smoothing_newton.h, up to 14 factorisations or max_iterations, and 6 of
+/// proximal Newton); not after sweeps. Where contacts of bodies have no upper bounds and
 /// masses within 1 to 100, two things are tried besides. If a factorisation costs much beside a
 /// sweep (by its flops a row: piles, whose graph of bodies has large separators), 200 sweeps of
 /// Nncg, or 60 from a warm start, find the contacts that press to within a few; their set is mostly

@@ -69,31 +69,9 @@ double ProximalNewton::line_search(const ScaledProblem& problem, const WhitenedR
   return at - derivative / slope;
 }
 
-/// velocity_: the minimum of phi if the rows between their bounds were those that point_ and its
-/// gradient say. From far away, where x_k - w_i / delta throws half of the rows on their bounds,
-/// the first steps from u = 0 are short. @return false if it could not be found
-bool ProximalNewton::start_on_set(const ScaledProblem& problem, BodySpaceSystem& system,
-                                  double proximal) {
-  const Index n = point_.size();
-  change_.resize(n);
-  for (Index i = 0; i < n; ++i) {
-    const double target = point_[i] - base_slack_[i];
-    const bool is_between = target > problem.lower()[i] && target < problem.upper()[i];
-    const double clamped = std::clamp(target, problem.lower()[i], problem.upper()[i]);
-    e_[i] = is_between ? 0.0 : kInfinity;
-    change_[i] = is_between ? -base_slack_[i] / weight_[i] : clamped - point_[i];
-  }
-  if (!system.factor(e_, proximal)) {
-    return false;
-  }
-  system.rows().transpose_times(change_, velocity_);
-  system.solve_in_body_space(velocity_);
-  return velocity_.allFinite();
-}
-
 /// x_ <- the proximal point's answer. @return false if it could not be found.
 bool ProximalNewton::step(ScaledProblem& problem, BodySpaceSystem& system, double proximal,
-                          bool is_far, int most_factorizations, const Deadline& deadline) {
+                          int most_factorizations, const Deadline& deadline) {
   constexpr int kMostNewtonSteps = 30;
   constexpr int kMostStale = 4;
   constexpr double kFalls = 0.1;  // what refining an exact step must leave to be worth another
@@ -104,9 +82,6 @@ bool ProximalNewton::step(ScaledProblem& problem, BodySpaceSystem& system, doubl
   problem.gradient(x_, base_slack_);
   velocity_.setZero(rows.degrees_of_freedom());
   e_.resize(rows.rows());
-  if (is_far && !start_on_set(problem, system, proximal)) {
-    return false;
-  }
   double first = 0.0;
   double least = kInfinity;
   double last = kInfinity;
@@ -153,29 +128,23 @@ bool ProximalNewton::step(ScaledProblem& problem, BodySpaceSystem& system, doubl
 }
 
 void ProximalNewton::improve(ScaledProblem& problem, BodySpaceSystem& system, double proximal,
-                             double least_proximal, int most_steps, int most_factorizations,
-                             double tolerance, const Deadline& deadline) {
-  constexpr double kFalls = 0.03;
-  const bool is_far = proximal > least_proximal;
-  // What a step must leave. From a start whose set is nearly right the first leaves a thousandth;
-  // from what sweeps leave of a cold one, which is as small and wrong everywhere, a quarter.
-  double most_left = is_far ? 0.03 : 0.5;
+                             int most_steps, int most_factorizations, double tolerance,
+                             const Deadline& deadline) {
+  constexpr double kMustFall = 0.5;
   x_ = problem.best();
   double before = problem.best_residual();
   for (int k = 0;
        k < most_steps && system.factorizations() < most_factorizations && !deadline.passed(); ++k) {
     weight_ = system.rows().compliance().array() + proximal;
-    if (!step(problem, system, proximal, is_far, most_factorizations, deadline)) {
+    if (!step(problem, system, proximal, most_factorizations, deadline)) {
       return;
     }
     problem.gradient(x_, slack_);
     const double after = problem.consider(x_, slack_);
-    if (after > most_left * before || problem.best_residual() <= 0.1 * tolerance) {
+    if (after > kMustFall * before || problem.best_residual() <= 0.1 * tolerance) {
       return;
     }
-    most_left = 0.5;
     before = after;
-    proximal = std::max(kFalls * proximal, least_proximal);
   }
 }
 

@@ -25,23 +25,17 @@ namespace signorini::lcp {
 /// factorisations, whatever is redundant.
 class ProximalNewton {
  public:
-  /// Outer steps from the problem's best x until the residual no longer halves (at the first step
-  /// from far away: falls to 3 %) or is a tenth of the tolerance.
-  /// @param proximal delta > 0 of the first step, of a unit diagonal; 3 % of it in every
-  /// further one, down to least_proximal: large ones are quick from far away, small ones near the
-  /// solution. Where it is larger than least_proximal x is taken for far away, and every step
-  /// starts from the set that it points at
+  /// Outer steps from the problem's best x until the residual no longer halves or is a tenth of the
+  /// tolerance.
+  /// @param proximal delta > 0, of a unit diagonal
   /// @param most_steps outer steps
   /// @param most_factorizations of all steps together
-  void improve(ScaledProblem& problem, BodySpaceSystem& system, double proximal,
-               double least_proximal, int most_steps, int most_factorizations, double tolerance,
-               const Deadline& deadline);
+  void improve(ScaledProblem& problem, BodySpaceSystem& system, double proximal, int most_steps,
+               int most_factorizations, double tolerance, const Deadline& deadline);
 
  private:
   [[nodiscard]] bool step(ScaledProblem& problem, BodySpaceSystem& system, double proximal,
-                          bool is_far, int most_factorizations, const Deadline& deadline);
-  [[nodiscard]] bool start_on_set(const ScaledProblem& problem, BodySpaceSystem& system,
-                                  double proximal);
+                          int most_factorizations, const Deadline& deadline);
   void dual_gradient(const ScaledProblem& problem, const WhitenedRows& rows, const Vector& u,
                      Vector& gradient);
   double line_search(const ScaledProblem& problem, const WhitenedRows& rows);
