@@ -41,6 +41,7 @@ FuzzCommand::FuzzCommand(CLI::App& app) : options_(std::make_unique<Options>()) 
                    "Every so many problems exact Lemke says whether a solution exists")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  command_->add_flag("--warm", o.study.warm, "Solve again from each answer with noise");
   command_->add_option("--hang", o.study.hang_seconds, "Seconds after which a problem is a hang")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();

@@ -14,8 +14,10 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 #include <memory>
+#include <random>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 #include <sys/mman.h>
 #include <unistd.h>
 #include <utility>
@@ -167,6 +169,29 @@ class SolverRun {
       return;
     }
     solver.solve(drawn.problem, result_);
+    judge(index, drawn, "", part);
+    if (options_.warm && draw_start(index, drawn.problem.size())) {
+      solver.solve(drawn.problem, result_, &start_);
+      judge(index, drawn, " --warm", part);
+    }
+  }
+
+  /// start_: the last answer with noise. @return false if the answer is not there or not finite
+  bool draw_start(std::int64_t index, lcp::Index rows) {
+    constexpr std::array kNoise = {1e-10, 1e-6, 1e-2, 1.0};
+    if (result_.z.size() != rows || rows == 0 || !result_.z.allFinite()) {
+      return false;
+    }
+    std::mt19937_64 random(options_.seed ^ static_cast<std::uint64_t>(index));
+    std::normal_distribution<double> normal(0.0, kNoise[index % kNoise.size()]);
+    const double size = result_.z.cwiseAbs().maxCoeff();
+    start_ = result_.z.unaryExpr([&](double z) {
+      return z * (1.0 + normal(random)) + (random() % 2 == 0 ? size * normal(random) : 0.0);
+    });
+    return start_.allFinite();
+  }
+
+  void judge(std::int64_t index, const FuzzProblem& drawn, std::string_view option, Part& part) {
     ++part.row.judged;
     count_status(part.row);
     const Verdict verdict = judge_claim(drawn.problem, result_, options_.tolerance);
@@ -177,7 +202,7 @@ class SolverRun {
     }
     if (!wrong.empty()) {
       count_wrong(part.row);
-      part.complain(where(index, drawn) +
+      part.complain(where(index, drawn, option) +
                     fmt::format(": says {}: {}", to_string(result_.status), wrong));
     }
   }
@@ -226,22 +251,25 @@ class SolverRun {
                : "";
   }
 
-  std::string where(std::int64_t index, const FuzzProblem& drawn) const {
-    return fmt::format("--seed {} --solver {} --first {} --problems 1 ({}, n = {})", options_.seed,
-                       solver_.name, index, drawn.recipe, drawn.problem.size());
+  std::string where(std::int64_t index, const FuzzProblem& drawn, std::string_view option) const {
+    return fmt::format("--seed {} --solver {} --first {} --problems 1{} ({}, n = {})",
+                       options_.seed, solver_.name, index, option, drawn.recipe,
+                       drawn.problem.size());
   }
 
   void count_culprit(std::int64_t index, const tools::ChildAnswer& answer, Part& part) const {
     const bool hangs = answer.end == tools::ChildEnd::kTimedOut;
     (hangs ? part.row.hangs : part.row.crashes) += 1;
-    part.complain(where(index, draw_fuzz_problem(options_.seed, index)) +
-                  (hangs ? fmt::format(": hangs for {} s", options_.hang_seconds)
-                         : ": crashes: " + answer.reason));
+    part.complain(
+        where(index, draw_fuzz_problem(options_.seed, index), options_.warm ? " --warm" : "") +
+        (hangs ? fmt::format(": hangs for {} s", options_.hang_seconds)
+               : ": crashes: " + answer.reason));
   }
 
   FuzzOptions options_;
   FuzzSolver solver_;
   lcp::Result result_;
+  lcp::Vector start_;
 };
 
 void check(const FuzzOptions& options) {
@@ -295,15 +323,15 @@ Part run_solver(const FuzzOptions& options, const FuzzSolver& solver, FuzzCounts
 }
 
 void print_header(std::ostream& out) {
-  fmt::print(out, "{:<18}{:>9}{:>9}{:>9}{:>8}{:>8}{:>9} |{:>7}{:>7}{:>7}{:>6}{:>8} |{:>10}{:>8}\n",
+  fmt::print(out, "{:<20}{:>9}{:>9}{:>9}{:>8}{:>8}{:>9} |{:>7}{:>7}{:>7}{:>6}{:>8} |{:>10}{:>8}\n",
              "solver", "judged", "refused", "solved", "proofs", "invalid", "no claim", "solved",
              "proofs", "other", "hangs", "crashes", "rationals", "s");
-  fmt::print(out, "{:<70} | {:<34} |\n", "", "wrong");
+  fmt::print(out, "{:<72} | {:<34} |\n", "", "wrong");
 }
 
 void print_row(const FuzzRow& row, std::ostream& out) {
   fmt::print(out,
-             "{:<18}{:>9}{:>9}{:>9}{:>8}{:>8}{:>9} |{:>7}{:>7}{:>7}{:>6}{:>8} |{:>10}{:>8.1f}\n",
+             "{:<20}{:>9}{:>9}{:>9}{:>8}{:>8}{:>9} |{:>7}{:>7}{:>7}{:>6}{:>8} |{:>10}{:>8.1f}\n",
              row.solver, row.judged, row.refused, row.solved, row.proofs, row.invalid, row.others,
              row.wrong_solved, row.wrong_proofs, row.wrong_others, row.hangs, row.crashes,
              row.by_rationals, row.seconds);
@@ -313,7 +341,7 @@ void print_row(const FuzzRow& row, std::ostream& out) {
 void print_samples(const FuzzCounts& counts, std::ostream& out) {
   fmt::print(out, "\nSample solved by exact Lemke:\n");
   for (const FuzzRow& row : counts.rows) {
-    fmt::print(out, "{:<18}{} with a solution, {} of them solved; {} proven to have none\n",
+    fmt::print(out, "{:<20} {} with a solution, {} of them solved; {} proven to have none\n",
                row.solver, row.with_solution, row.sample_solved, row.without_solution);
   }
 }

@@ -24,6 +24,9 @@ struct FuzzOptions {
   /// Every so many problems, LCPs of at most 12 rows are also solved by exact Lemke (at most 500
   /// pivots): no proof may contradict a solution. > 0
   std::int64_t truth_every = 100;
+  /// Every problem is solved a second time, judged and counted as well, from the first answer with
+  /// noise: of 1e-10, 1e-6, 1 % and all of its size in turn.
+  bool warm = false;
   double hang_seconds = 20.0;  ///< a problem that takes longer is a hang, > 0
   bool in_children = true;     ///< false: in this process, for debuggers; a crash is then a crash
 };
@@ -31,7 +34,7 @@ struct FuzzOptions {
 /// What was counted for one solver.
 struct FuzzRow {
   std::string solver;
-  std::int64_t judged = 0;            ///< problems that it took
+  std::int64_t judged = 0;            ///< solves of problems that it took
   std::int64_t refused = 0;           ///< problems that it does not take
   std::int64_t solved = 0;            ///< solved and solved to rounding
   std::int64_t proofs = 0;            ///< infeasible and no solution below Z

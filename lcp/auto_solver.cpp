@@ -25,6 +25,7 @@ constexpr double kMassRatioForSweeps = 1e3;   // above it sweeps stall
 constexpr std::size_t kAttemptsKept = 16;     // no chain is longer
 constexpr int kFirstSweeps = 48;
 constexpr int kConeInteriorSteps = 30;  // where nothing slides about ten are enough
+constexpr int kConeNewtonSteps = 400;   // what takes more is as a rule beyond it
 constexpr int kSetsForLastDigits = 2;
 constexpr int kBlockPivotingSets = 50;  // real problems need up to 20; more only where it cycles
 // An interior point of this many rows costs a few milliseconds: sweeps only win where little
@@ -32,7 +33,7 @@ constexpr int kBlockPivotingSets = 50;  // real problems need up to 20; more onl
 constexpr Index kRowsForAccurateSweeps = 5000;
 constexpr double kRoughTolerance = 1e-5;
 constexpr double kCaution = 1.5;  // rates fall as sweeps go on
-// From an iterate worse than this the interior point needs more factorisations than from none.
+// From an iterate worse than this a path takes more factorisations than from none.
 constexpr double kWarmEnough = 1e-4;
 // Rows that are not tangential up to which a proof that there is no answer costs less than one
 // factorisation of Newton's.
@@ -158,7 +159,16 @@ void AutoSolver::choose_for_cones(const Problem& problem) {
   if (proof_is_cheap) {
     chain_.push_back(proof);
   }
-  chain_.push_back({"alart-curnier", "friction cones"});
+  // From no start the smooth path is the shorter way in body space; small systems of a given M are
+  // smaller still without the contacts that are open. Near a start nothing has to be smoothed.
+  const bool path_first = factored && !has_start_ && !associated;
+  if (!path_first) {
+    chain_.push_back({"alart-curnier", "friction cones", kConeNewtonSteps});
+  }
+  chain_.push_back({"cone-smoothing", "friction cones, by a smooth path"});
+  if (path_first || settings_.max_iterations < 0) {
+    chain_.push_back({"alart-curnier", path_first ? "friction cones" : "from the best so far"});
+  }
   if (!proof_is_cheap && normals <= kStructuredLemkeRows) {
     chain_.push_back(proof);
   }
@@ -214,8 +224,8 @@ bool AutoSolver::attempt(const Problem& problem, const Step& step, int max_itera
   if (!tried.refuses(problem).empty()) {
     return false;
   }
-  const bool start_helps =
-      step.solver != "interior-point" || best_solver_.empty() || best_merit_ <= kWarmEnough;
+  const bool follows_a_path = step.solver == "interior-point" || step.solver == "cone-smoothing";
+  const bool start_helps = !follows_a_path || best_solver_.empty() || best_merit_ <= kWarmEnough;
   tried.solve_within(left, problem, one_, has_start_ && start_helps ? &start_ : nullptr);
   note_attempt(step, result);
   add(result.statistics.iterations, one_.statistics.iterations);

@@ -1,3 +1,4 @@
+#include <signorini/lcp/smooth_clamp.h>
 #include <signorini/lcp/smoothing_newton.h>
 
 #include <cmath>
@@ -13,50 +14,12 @@ constexpr double kFalls = 0.05;
 // their digits in the solves, and steps become short where mu is small.
 constexpr double kProximal = 1e-9;
 
-/// s(t) and its derivatives; nothing cancels. @pre mu > 0
-struct SmoothPlus {
-  SmoothPlus(double t, double mu) {
-    const double root = std::sqrt(t * t + 4.0 * mu * mu);
-    const double large = 0.5 * (root + std::abs(t));
-    const double small = mu * mu / large;
-    value = t > 0.0 ? large : small;
-    by_t = value / root;
-    rest = (t > 0.0 ? small : large) / root;
-    by_mu = 2.0 * mu / root;
-  }
-  double value, by_t, rest, by_mu;  // rest = 1 - by_t
-};
-
-/// p(y) of a row and its derivatives.
-struct SmoothClamp {
-  SmoothClamp(double y, double lower, double upper, double mu) : value(y) {
-    if (lower > -kInfinity) {
-      const SmoothPlus s(y - lower, mu);
-      value = lower + s.value;
-      by_y = s.by_t;
-      rest = s.rest;
-      by_mu = s.by_mu;
-    }
-    if (upper < kInfinity) {
-      const SmoothPlus s(y - upper, mu);
-      value -= s.value;
-      by_y -= s.by_t;
-      rest += s.by_t;
-      by_mu -= s.by_mu;
-    }
-  }
-  double value, by_y = 1.0, rest = 0.0, by_mu = 0.0;  // rest = 1 - by_y
-};
-
-/// The root of the mean square of x - p(x - r); of the natural residual if mu is 0.
+/// The root of the mean square of x - p(x - r).
 double error_of(const ScaledProblem& problem, const Vector& x, const Vector& r, double mu) {
   double sum = 0.0;
   for (Index i = 0; i < x.size(); ++i) {
-    const double lower = problem.lower()[i];
-    const double upper = problem.upper()[i];
-    const double y = x[i] - r[i];
     const double error =
-        x[i] - (mu > 0.0 ? SmoothClamp(y, lower, upper, mu).value : std::clamp(y, lower, upper));
+        x[i] - SmoothClamp(x[i] - r[i], problem.lower()[i], problem.upper()[i], mu).value;
     sum += error * error;
   }
   return std::sqrt(sum / static_cast<double>(x.size()));

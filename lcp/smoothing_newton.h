@@ -8,11 +8,9 @@ namespace signorini::lcp {
 
 /// Newton's method on smoothed complementarity conditions, from a start that is near:
 ///
-///     x = p(x - r),   r = A x + g,   p(y) = lower + s(y - lower) - s(y - upper),
-///     s(t) = (t + sqrt(t^2 + 4 mu^2)) / 2,
+///     x = p(x - r),   r = A x + g,   p of smooth_clamp.h with mu > 0
 ///
-/// (Chen, Harker, SIAM J. Matrix Anal. Appl. 14, 1993; Kanzow, ibid. 17, 1996; as a path: Burke,
-/// Xu, Math. Oper. Res. 23, 1998). Its solutions for mu > 0 are the central path of an interior
+/// (as a path to mu = 0: Burke, Xu, Math. Oper. Res. 23, 1998). Its solutions for mu > 0 are the central path of an interior
 /// point, x_i r_i = mu^2 where there is no upper bound, but iterates may be beyond their bounds: a
 /// start need not be moved away from them, and no step is cut where a row reaches one. A step
 /// solves the interior point's system, (A + diag(e) + proximal) dx = h with e = (1 - p') / p', and

@@ -3,6 +3,7 @@
 #include <signorini/lcp/auto_solver.h>
 #include <signorini/lcp/block_pivoting.h>
 #include <signorini/lcp/cone_interior_point.h>
+#include <signorini/lcp/cone_smoothing.h>
 #include <signorini/lcp/dantzig.h>
 #include <signorini/lcp/frictionless.h>
 #include <signorini/lcp/interior_point.h>
@@ -56,6 +57,7 @@ constexpr std::array kEntries = {
     Entry{"dantzig", &make<Dantzig, DantzigSettings>},
     Entry{"block-pivoting", &make<BlockPivoting, BlockPivotingSettings>},
     Entry{"cone-interior-point", &make<ConeInteriorPoint, ConeInteriorPointSettings>},
+    Entry{"cone-smoothing", &make<ConeSmoothing, ConeSmoothingSettings>},
     Entry{"frictionless", &make<Frictionless, FrictionlessSettings>},
     Entry{"sticking", &make<Sticking, StickingSettings>},
     Entry{"alart-curnier", &make<AlartCurnier, AlartCurnierSettings>},

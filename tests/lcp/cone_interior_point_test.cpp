@@ -4,6 +4,7 @@
 #include "allocation_count.h"
 #include "bench/contact_families.h"
 #include "definition_residual.h"
+#include "family_with_friction.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -52,25 +53,6 @@ Problem random_contacts(unsigned seed, int contacts, int dimension, int freedom,
   for (int k = 0; k < contacts; ++k) {
     problem.cones.push_back({dimension * k, dimension, 0.1 * (k % 10)});
   }
-  return problem;
-}
-
-/// A family of contact problems with friction 0.5 at every contact.
-Problem family_with_friction(const bench::FamilySpec& spec, FrictionLaw law) {
-  const bench::FamilyScene scene = bench::make_family_scene(spec);
-  FactoredMatrix A;
-  A.mass = scene.inverse_mass().mass;
-  Problem problem;
-  for (const auto& touch : scene.touches) {
-    problem.cones.push_back({static_cast<int>(A.rows()), 3, 0.5});
-    const Eigen::Vector3d tangent = touch.normal.unitOrthogonal();
-    scene.add_row(touch, touch.normal, A);
-    scene.add_row(touch, tangent, A);
-    scene.add_row(touch, touch.normal.cross(tangent), A);
-  }
-  problem.q = scene.free_row_velocities(A);
-  problem.M = A;
-  problem.friction_law = law;
   return problem;
 }
 
@@ -190,7 +172,7 @@ TEST(ConeInteriorPoint, CertifiesAHundredContactsOfBodiesByTheAssociatedLaw) {
   for (const bench::FamilySpec& spec : {bench::FamilySpec{.family = "tower4", .size = 25},
                                         bench::FamilySpec{.family = "pyramid2d", .size = 5},
                                         bench::FamilySpec{.family = "spheres", .size = 100}}) {
-    const Problem problem = family_with_friction(spec, FrictionLaw::kAssociated);
+    const Problem problem = family_with_friction(spec, 0.5, FrictionLaw::kAssociated);
     const Result result = solve(problem);
     EXPECT_GE(problem.cones.size(), 100U) << spec.family;
     EXPECT_TRUE(is_solved(result.status)) << spec.family << ": " << to_string(result.status);
@@ -244,7 +226,7 @@ TEST(ConeInteriorPoint, TakesNoRowsAndOneRow) {
 
 TEST(ConeInteriorPoint, TakesEveryFormOfMAlike) {
   Problem problem =
-      family_with_friction({.family = "spheres", .size = 20}, FrictionLaw::kAssociated);
+      family_with_friction({.family = "spheres", .size = 20}, 0.5, FrictionLaw::kAssociated);
   const Result factored = solve(problem);
   problem.M = to_dense(problem.M);
   const Result dense = solve(problem);
@@ -306,7 +288,7 @@ TEST(ConeInteriorPoint, GivesTheSameBitsAgain) {
   Result result;
   solver.solve(problem, result);
   const Vector first = result.z;
-  solver.solve(family_with_friction({.family = "tower4", .size = 2}, FrictionLaw::kCoulomb),
+  solver.solve(family_with_friction({.family = "tower4", .size = 2}, 0.5, FrictionLaw::kCoulomb),
                result);
   solver.solve(problem, result);
   EXPECT_EQ(result.z, first);
@@ -353,7 +335,7 @@ TEST(ConeInteriorPoint, RefusesSettingsOutOfRange) {
 TEST(ConeInteriorPoint, AllocatesNothingTheSecondTimeButInTheBackEnd) {
   const Problem given = random_contacts(3, 12, 3, 16, 0.1);
   const Problem sparse = random_contacts(3, 60, 3, 80, 0.1);
-  const Problem bodies = family_with_friction({"tower4", 64}, FrictionLaw::kCoulomb);
+  const Problem bodies = family_with_friction({"tower4", 64}, 0.5, FrictionLaw::kCoulomb);
   for (const Problem* problem : {&given, &sparse, &bodies}) {
     ConeInteriorPoint solver({{.tolerance = 1e-15}, 20});
     Result result;
