@@ -186,7 +186,9 @@ class SolverRun {
     std::normal_distribution<double> normal(0.0, kNoise[index % kNoise.size()]);
     const double size = result_.z.cwiseAbs().maxCoeff();
     start_ = result_.z.unaryExpr([&](double z) {
-      return z * (1.0 + normal(random)) + (random() % 2 == 0 ? size * normal(random) : 0.0);
+      const double scaled = z * (1.0 + normal(random));
+      const double moved = size * normal(random);
+      return random() % 2 == 0 ? scaled + moved : scaled;
     });
     return start_.allFinite();
   }

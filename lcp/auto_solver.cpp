@@ -161,13 +161,18 @@ void AutoSolver::choose_for_cones(const Problem& problem) {
   }
   // From no start the smooth path is the shorter way in body space; small systems of a given M are
   // smaller still without the contacts that are open. Near a start nothing has to be smoothed.
-  const bool path_first = factored && !has_start_ && !associated;
-  if (!path_first) {
+  const bool has_path = problem.limits.empty();
+  const bool path_first = has_path && factored && !has_start_ && !associated;
+  if (has_path && !path_first) {
     chain_.push_back({"alart-curnier", "friction cones", kConeNewtonSteps});
   }
-  chain_.push_back({"cone-smoothing", "friction cones, by a smooth path"});
-  if (path_first || settings_.max_iterations < 0) {
-    chain_.push_back({"alart-curnier", path_first ? "friction cones" : "from the best so far"});
+  if (has_path) {
+    chain_.push_back({"cone-smoothing", "friction cones, by a smooth path"});
+  }
+  if (!has_path || path_first) {
+    chain_.push_back({"alart-curnier", "friction cones"});
+  } else if (settings_.max_iterations < 0) {
+    chain_.push_back({"alart-curnier", "from the best so far"});
   }
   if (!proof_is_cheap && normals <= kStructuredLemkeRows) {
     chain_.push_back(proof);

@@ -30,7 +30,9 @@ struct AutoSettings : SolverSettings {
 /// | friction cones | sticking (factored M, from a start) or cone-interior-point (factored M, from
 /// none; the associated law, n > 100), frictionless (factored M, from none, up to 300 rows that are
 /// not tangential), alart-curnier (400 steps; not for Coulomb's law, factored M, from none),
-/// cone-smoothing, alart-curnier, frictionless (if it was not tried, up to 2000 such rows), nsgs |
+/// cone-smoothing, alart-curnier (unless max_iterations is set and it was tried), frictionless (if
+/// it was not tried, up to 2000 such rows), nsgs; with coupled limits besides, where the path is
+/// refused, alart-curnier once |
 /// | LCP, factored M, 48 < n <= 180, one contact a pair of bodies | structured-lemke (360 pivots;
 /// behind the sweeps of the row for n > 100), then as below |
 /// | symmetric M, n <= 100 | interior-point (factored M, from no start, n > 48; not up to 72 where
@@ -63,15 +65,15 @@ struct AutoSettings : SolverSettings {
 /// - factored M: interior-point 2 to 24; block-pivoting 7 to 83 and with mass ratios of 1e6 up to
 ///   2205, so it is not tried;
 /// - associated law, M given whole, 8 real problems with n > 600: cone-interior-point 19 to 43,
-///   alart-curnier 12 to 31, but of the two hardest 92 and 372. Coulomb's: alart-curnier 9 to 154
-///   (RockPile 809), but smaller ones, as open contacts drop out of its systems;
+///   alart-curnier 12 to 31, but of the two hardest 92 and 372. Coulomb's: alart-curnier 9 to 153
+///   (RockPile 344), but smaller ones, as open contacts drop out of its systems;
 ///   cone-interior-point 20 to 165, and it does not end on RockPile nor on the largest. So it is
-///   not tried there. cone-smoothing takes 9 to 58 of the 32 real ones, and does not end on
-///   RockPile (344 by alart-curnier, 3 to 153 the others);
+///   not tried there. cone-smoothing takes 6 to 58 of 31 of the 32 real ones, and does not end on
+///   RockPile;
 /// - Coulomb's law, factored M, from no start, 90 families of 444 to 864 rows (mass ratios 1 to
-///   1e6): cone-smoothing solves 57 in 100 steps, alart-curnier 77 in 2000, one or the other 84,
-///   with a third less steps where cone-smoothing goes first; piles of spheres 19 to 100 where
-///   alart-curnier takes 100 to 1000 or does not end.
+///   1e6): cone-smoothing solves 56 in 100 steps, alart-curnier 77 in 2000, one or the other 84,
+///   with a third less steps where cone-smoothing goes first; 15 of 18 piles of spheres in 24 to
+///   79, 8 of them in 101 to 1009 by alart-curnier.
 ///
 /// What another solver solved to rounding only, sticking is given to find the last digits of.
 /// A proof that there is no solution ends it. Where there is none below a Z so far off that M,
@@ -79,8 +81,9 @@ struct AutoSettings : SolverSettings {
 /// tried further, and the detail says so: no iteration gets there, and no certificate could tell.
 ///
 /// Solvers that refuse a problem are passed over; lemke only up to 1000 rows, structured-lemke up
-/// to 2000. Each starts from the best iterate so far (the interior
-/// point only from one with residuals below 1e-4, being slower from a worse one than from none).
+/// to 2000. Each starts from the best iterate so far (the paths,
+/// interior-point and cone-smoothing, only from one with residuals below 1e-4, being slower from a
+/// worse one than from none).
 /// result.attempts lists every one tried, with the reason, status, residuals, cost and time;
 /// result.solver names the one whose iterate is returned ("auto: pgs"), and the statistics are sums
 /// over the attempts (factor_bytes the largest). If none solves, z is the best iterate, and a ray

@@ -8,12 +8,14 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
 namespace signorini::lcp {
 namespace {
 
 constexpr double kAlpha = 1e-9;
-constexpr double kLargestAlpha = 1e-3;
+constexpr double kAlphaRises = 10.0;
+constexpr int kMostRises = 6;
 
 }  // namespace
 
@@ -34,6 +36,8 @@ class ConeSmoothing::Workspace {
   BestIterate best_;
   double residual_ = 0.0;  // of the best iterate
   double alpha_ = kAlpha;
+  int rises_ = 0;  // of alpha
+  int factorizations_ = 0;
   Vector x_, u_, F_, by_mu_, dx_, du_, next_x_, next_u_, z_;
   std::vector<AlartCurnierFunction::Block> A_, B_;
   std::vector<AlartCurnierFunction::Coupling> no_couplings_;
@@ -63,13 +67,15 @@ double ConeSmoothing::Workspace::aim(double mu, double error) const {
 bool ConeSmoothing::Workspace::find_step(double mu, double next_mu) {
   cones_.linearise(x_, u_, mu, F_, A_, B_, by_mu_);
   F_ += (next_mu - mu) * by_mu_;
-  while (!(groups_.factor(A_, B_, no_couplings_, alpha_) && groups_.solve(F_, dx_))) {
-    alpha_ *= 10.0;
-    if (alpha_ > kLargestAlpha) {
+  for (;; ++rises_, alpha_ *= kAlphaRises) {
+    ++factorizations_;
+    if (groups_.factor(A_, B_, no_couplings_, alpha_) && groups_.solve(F_, dx_)) {
+      return true;
+    }
+    if (rises_ == kMostRises) {
       return false;
     }
   }
-  return true;
 }
 
 /// How much of the step is gone, to next_x_ and next_u_.
@@ -111,6 +117,8 @@ Status ConeSmoothing::Workspace::solve(const Problem& problem,
   groups_.set(problem);
   cones_.set(groups_.function().groups(), problem.friction_law);
   alpha_ = kAlpha;
+  rises_ = 0;
+  factorizations_ = 0;
   residual_ = std::numeric_limits<double>::infinity();
   x_.setZero(problem.size());
   if (warm_start != nullptr) {
@@ -138,8 +146,12 @@ Status ConeSmoothing::Workspace::solve(const Problem& problem,
     const double t = search(mu, next_mu, error);
     mu += t * (next_mu - mu);
     x_.swap(next_x_);
-    groups_.multiply(x_, u_);
-    u_ += groups_.b();
+    if (t == 1.0) {
+      u_.swap(next_u_);
+    } else {
+      groups_.multiply(x_, u_);
+      u_ += groups_.b();
+    }
     shorts = t < kShort ? shorts + 1 : 0;
     if (shorts == kMostShort) {
       mu *= kRise;
@@ -147,9 +159,10 @@ Status ConeSmoothing::Workspace::solve(const Problem& problem,
     }
   }
   result.z = best_.z();
-  result.statistics = {
-      .iterations = steps, .factorizations = steps, .factor_bytes = groups_.factor_bytes()};
-  if (alpha_ > kAlpha) {
+  result.statistics = {.iterations = steps,
+                       .factorizations = factorizations_,
+                       .factor_bytes = groups_.factor_bytes()};
+  if (rises_ > 0) {
     result.detail += "regularisation raised to " + number_text(alpha_) +
                      " where a system was singular (it changes the path, not the answer)";
   }

@@ -392,7 +392,7 @@ bool InteriorPoint::Workspace::approach_by_smoothing() {
   }
   trial_ = problem_.best();
   return smoothing_newton_.improve(problem_, trial_, most, settings_.tolerance, *deadline_) ||
-         polish(kMostOfPolish);
+         polish(std::min(kMostOfPolish, most));
 }
 
 /// Tries the set of all rows from x = 0, where all contacts press at rest. @return whether the

@@ -54,15 +54,15 @@ struct InteriorPointSettings : SolverSettings {
 /// body (whitened_rows.h). Redundant contacts cost nothing and disturb nothing. A given M may be
 /// nonsymmetric; the method is made for semidefinite M, whatever else it solves.
 ///
-/// A warm start is tried as an active set first; if that fails, M is symmetric and its residual is
-/// below 0.3, by smoothing (smoothing_newton.h, up to 14 factorisations or max_iterations, and 6 of
-/// proximal Newton); not after sweeps. Where contacts of bodies have no upper bounds and
-/// masses within 1 to 100, two things are tried besides. If a factorisation costs much beside a
-/// sweep (by its flops a row: piles, whose graph of bodies has large separators), 200 sweeps of
-/// Nncg, or 60 from a warm start, find the contacts that press to within a few; their set is mostly
-/// settled by one to three factorisations, and the result says so. Else, without a warm start, the
-/// set of all rows: at rest nearly all contacts press, and one or two factorisations are all; if
-/// not, that costs one to three more.
+/// A warm start is tried as an active set first; if that fails, M is symmetric and the best
+/// residual so far is below 0.3, by smoothing from there (smoothing_newton.h: 14 factorisations at
+/// most, and 6 of proximal Newton, each at most max_iterations); not after sweeps. Where contacts
+/// of bodies have no upper bounds and masses within 1 to 100, two things are tried besides. If a
+/// factorisation costs much beside a sweep (by its flops a row: piles, whose graph of bodies has
+/// large separators), 200 sweeps of Nncg, or 60 from a warm start, find the contacts that press to
+/// within a few; their set is mostly settled by one to three factorisations, and the result says
+/// so. Else, without a warm start, the set of all rows: at rest nearly all contacts press, and one
+/// or two factorisations are all; if not, that costs one to three more.
 ///
 /// Takes no coupled limits and no cones. Statuses beside solved: kIterationLimit, kTimeLimit,
 /// kStalled, and kNumericalBreakdown if a factorisation failed; z is the best iterate that was

@@ -12,6 +12,7 @@ using Block = SmoothedCones::Block;
 using Vector3 = Eigen::Vector3d;
 
 constexpr double kSlipSmoothing = 0.03;  // e of mu
+constexpr double kLeastFriction = 1e-12;
 
 /// A cone's part of F and, once asked, its derivatives. Rows that it does not have stay 0.
 class ConePart {
@@ -96,7 +97,7 @@ class ConePart {
 };
 
 [[nodiscard]] bool is_cone(const Group& group) {
-  return group.dimension > 1 && group.mu > 0.0;
+  return group.dimension > 1 && group.mu >= kLeastFriction;
 }
 
 /// p(x - u) of a group's first row: a row with bounds, or the normal row of a cone without

@@ -19,7 +19,10 @@ namespace signorini::lcp {
 ///   SIAM J. Optim. 12, 2001, section 4: Chen, Harker, Kanzow and Smale's function). u~ = u in the
 ///   associated law; in Coulomb's De Saxce's u_N + m (|u_T|_e - e), |u_T|_e^2 = |u_T|^2 + e^2,
 ///   e = 0.03 mu;
-/// - a cone with m = 0:     its normal row as above, and F_T = x_T.
+/// - a cone with m < 1e-12: its normal row as above, and F_T = x_T (its force is nothing beside
+///   x_N; a certificate judges it as it is).
+///
+/// A large m costs digits of x_T: half of them at 1e16.
 ///
 /// The solutions for mu > 0 are a central path, (T x) o (T^-1 u~) = mu^2 (1, 0, 0).
 class SmoothedCones {
@@ -27,7 +30,7 @@ class SmoothedCones {
   using Group = AlartCurnierFunction::Group;
   using Block = AlartCurnierFunction::Block;
 
-  /// Keeps the groups. @pre none is a coupled row
+  /// Refers to the groups, which must outlive it unchanged. @pre none is a coupled row
   void set(const std::vector<Group>& groups, FrictionLaw law) {
     groups_ = groups;
     law_ = law;

@@ -76,14 +76,14 @@ bool SmoothingNewton::improve(ScaledProblem& problem, Vector& x, int most_steps,
     const double next_mu = kFalls * mu;
     linearise(problem, x, mu, next_mu);
     if (!problem.system().factor(e_, kProximal)) {
-      return false;
+      break;
     }
     problem.system().solve(h_, dx_);
     next_x_ = x + dx_;
     problem.gradient(next_x_, next_r_);  // and not A dx: r loses no digits from step to step
     dr_ = next_r_ - r_;
     if (!dr_.allFinite()) {
-      return false;
+      break;
     }
     const double t = search(problem, x, mu, next_mu);
     mu += t * (next_mu - mu);
@@ -91,15 +91,12 @@ bool SmoothingNewton::improve(ScaledProblem& problem, Vector& x, int most_steps,
     r_.swap(next_r_);
     inside_ = x.cwiseMax(problem.lower()).cwiseMin(problem.upper());
     problem.gradient(inside_, h_);
-    if (problem.consider(inside_, h_) <= tolerance) {
-      return true;
-    }
     shorts += t < kShort ? 1 : 0;
-    if (shorts == kMostShort) {
-      return false;
+    if (problem.consider(inside_, h_) <= tolerance || shorts == kMostShort) {
+      break;
     }
   }
-  return false;
+  return problem.best_residual() <= tolerance;
 }
 
 }  // namespace signorini::lcp

@@ -11,18 +11,19 @@ namespace signorini::lcp {
 ///     x = p(x - r),   r = A x + g,   p of smooth_clamp.h with mu > 0
 ///
 /// (as a path to mu = 0: Burke, Xu, Math. Oper. Res. 23, 1998). Its solutions for mu > 0 are the
-/// central path of an interior point, x_i r_i = mu^2 where there is no upper bound, but iterates
-/// may be beyond their bounds: a start need not be moved away from them, and no step is cut where a
-/// row reaches one. A step solves the interior point's system, (A + diag(e) + proximal) dx = h with
-/// e = (1 - p') / p', and aims at a twentieth of mu.
+/// central path of an interior point, (x_i - lower_i) r_i = mu^2 where there is no upper bound, but
+/// iterates may be beyond their bounds: a start need not be moved away from them, and no step is
+/// cut where a row reaches one. A step solves the interior point's system, (A + diag(e) + proximal)
+/// dx = h with e = (1 - p') / p', and aims at a twentieth of mu.
 class SmoothingNewton {
  public:
   /// Memory for problems of this size: improve() then takes none.
   void reserve(Index rows);
   /// Steps from x until the residual (ScaledProblem::consider, x moved inside its bounds) is within
-  /// the tolerance, two steps were short, or most_steps were made, a factorisation each.
+  /// the tolerance, two steps were short, a factorisation failed, time is over or most_steps were
+  /// made, a factorisation each.
   /// @param x in: the start; out: of no use
-  /// @return whether the residual is within the tolerance
+  /// @return whether the problem's best residual is within the tolerance
   bool improve(ScaledProblem& problem, Vector& x, int most_steps, double tolerance,
                const Deadline& deadline);
 

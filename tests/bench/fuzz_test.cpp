@@ -275,7 +275,8 @@ TEST_P(NeverALie, FastSample) {
                                             .warm = true},
                                            out);
   EXPECT_EQ(counts.wrong(), 0) << out.str();
-  EXPECT_GT(counts.rows.at(0).judged, 1000 - counts.rows.at(0).refused) << "also warm";
+  EXPECT_GT(counts.rows.at(0).judged, 1.8 * static_cast<double>(1000 - counts.rows.at(0).refused))
+      << "nearly all are solved a second time";
 }
 
 /// What fuzzing found, in the order of finding.

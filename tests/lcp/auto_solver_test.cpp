@@ -3,12 +3,15 @@
 #include "allocation_count.h"
 #include "bench/contact_families.h"
 #include "definition_residual.h"
+#include "family_with_friction.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
 #include <numeric>
 #include <random>
+#include <string>
+#include <vector>
 
 namespace signorini::lcp {
 namespace {
@@ -194,6 +197,43 @@ TEST(AutoSolver, TakesLargeAssociatedConesAsTheConvexProgramTheyAre) {
   const Result associated = solve(problem);
   EXPECT_EQ(associated.status, Status::kSolved);
   EXPECT_EQ(associated.solver, "auto: cone-interior-point");
+}
+
+/// The solvers tried for a pile that slides with Coulomb's cones, none of them allowed to get far.
+std::vector<std::string> tried_for_cones(Problem problem, const AutoSettings& settings,
+                                         const Vector* start = nullptr) {
+  Result result;
+  AutoSolver(settings).solve(problem, result, start);
+  std::vector<std::string> names;
+  for (const Attempt& attempt : result.attempts) {
+    names.emplace_back(attempt.solver);
+  }
+  return names;
+}
+
+TEST(AutoSolver, TriesASmoothPathForCones) {
+  using Names = std::vector<std::string>;
+  Problem problem = family_with_friction({.family = "spheres", .size = 40}, 0.4);
+  const AutoSettings few{{.max_iterations = 2}};
+  const Vector zero = Vector::Zero(problem.size());
+  EXPECT_EQ(tried_for_cones(problem, few), (Names{"cone-interior-point", "frictionless",
+                                                  "cone-smoothing", "alart-curnier", "nsgs"}));
+  EXPECT_EQ(tried_for_cones(problem, few, &zero),
+            (Names{"sticking", "alart-curnier", "cone-smoothing", "frictionless", "nsgs"}));
+  problem.M = to_dense(problem.M);
+  EXPECT_EQ(tried_for_cones(problem, few),
+            (Names{"alart-curnier", "cone-smoothing", "frictionless", "nsgs"}));
+}
+
+/// alart-curnier takes more than 1000 steps for it.
+TEST(AutoSolver, SolvesAPileThatSlidesByTheSmoothPath) {
+  const Problem problem =
+      family_with_friction({.family = "spheres", .size = 200, .mass_ratio = 1e3}, 0.8);
+  Result result;
+  AutoSolver().solve(problem, result);
+  EXPECT_EQ(result.status, Status::kSolved);
+  EXPECT_EQ(result.solver, "auto: cone-smoothing");
+  EXPECT_LE(result.statistics.factorizations, 300);
 }
 
 TEST(AutoSolver, TakesConesFreeRowsBoundsAndCoupledLimits) {

@@ -6,7 +6,6 @@
 #include "definition_residual.h"
 #include "family_with_friction.h"
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <array>
 #include <cmath>

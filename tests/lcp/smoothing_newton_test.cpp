@@ -110,7 +110,8 @@ TEST(SmoothingNewton, SolvesAGivenMatrix) {
 
 TEST(SmoothingNewton, StepsAreCounted) {
   const Problem problem = bounded_pyramid();
-  Start start(changed(problem, 1e-4), solution(problem));
+  const Problem other = changed(problem, 1e-4);
+  Start start(other, solution(problem));
   EXPECT_FALSE(start.improve(0));
   EXPECT_EQ(start.system->factorizations(), 0);
   EXPECT_FALSE(start.improve(1));
@@ -121,17 +122,15 @@ TEST(SmoothingNewton, StepsAreCounted) {
 TEST(SmoothingNewton, GivesUpWhereThereIsNoSolution) {
   const Problem problem = lcp(Matrix::Zero(2, 2), vector({-1.0, -1.0}));
   Start start(problem, Vector::Zero(2));
-  const double before = start.scaled.best_residual();
   EXPECT_FALSE(start.improve());
   EXPECT_LE(start.system->factorizations(), kMostSteps);
-  EXPECT_LE(start.scaled.best_residual(), before);
-  EXPECT_TRUE(start.scaled.best().allFinite());
+  EXPECT_EQ(start.scaled.best(), Vector::Zero(2));
 }
 
 TEST(SmoothingNewton, AnExactStartTakesNoStep) {
   const Problem problem = lcp(Matrix::Identity(2, 2), vector({1.0, 1.0}));
   Start exact(problem, Vector::Zero(2));
-  EXPECT_FALSE(exact.improve()) << "there is no error to smooth";
+  EXPECT_TRUE(exact.improve());
   EXPECT_EQ(exact.system->factorizations(), 0);
 }
 
