@@ -54,7 +54,7 @@ class ConePart {
     // Across the axis: (s(high) - s(low)) / (high - low), without the differences.
     const double roots = high.root + low.root;
     const double across = roots > 0.0 ? (high.value + low.value) / roots : mean;
-    Block P = Block::Zero();                                                   // dP / dy
+    Block P = Block::Zero();  // dP / dy
     P(0, 0) = mean;
     P.block<1, 2>(0, 1) = half * axis_.tail<2>().transpose();
     P.block<2, 1>(1, 0) = half * axis_.tail<2>();
